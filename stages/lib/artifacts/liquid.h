@@ -23,7 +23,8 @@ struct liquid_properties {
 // The properties in CONDITIONS, which conditions_complete has completed.
 struct liquid_properties liquid_of(const struct conditions *conditions);
 
-// Reads those that ARTIFACT has, the others are NAN; writes those that are known.
+// Reads those that ARTIFACT has, the others are NAN; writes those that are known. What
+// stages behind the drying use unless told otherwise.
 struct liquid_properties artifact_get_liquid(const struct artifact *artifact);
 void artifact_put_liquid(struct artifact *artifact,
                          const struct liquid_properties *liquid);
@@ -34,7 +35,8 @@ void liquid_complete(struct liquid_properties *told,
 
 // Whether surface tension or contact angle differ by more than a thousandth, where both
 // know them; then TEXT (SIZE bytes) says so in one line: "surface_tension = 0.0727 N/m,
-// but that of NAME is 0.0223". It is empty where they do not differ.
+// but that of NAME is 0.0223". It is empty where they do not differ. To warn, not to
+// refuse: a user may want to vary one number.
 bool liquid_differs(const struct liquid_properties *told,
                     const struct liquid_properties *has, const char *name, char *text,
                     size_t size);

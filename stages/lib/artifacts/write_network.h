@@ -11,7 +11,8 @@
 void write_network(const struct network *network, const struct invocation *invocation,
                    const struct artifact *input, const char *model);
 
-// The same for one made from anything: INPUTS are their digests, taken over.
+// The same for one made from anything: INPUTS are their digests, taken over. MODEL is
+// what was modelled and left out, for the provenance.
 void write_network_of(const struct network *network,
                       const struct invocation *invocation, json_t *inputs,
                       const char *model);

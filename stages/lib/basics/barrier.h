@@ -8,7 +8,8 @@
 #include <sched.h>
 #include <stdatomic.h>
 
-// Begin with {.size = threads}; there is nothing to free.
+// Begin with {.size = threads}; there is nothing to free. It is not copied or moved
+// while threads use it.
 struct barrier {
     int size; // threads, each of which must come
     // Those that have come in this round; 0 or 1, changed by the last to come.
@@ -16,7 +17,9 @@ struct barrier {
 };
 
 // Returns when all SIZE threads have come, at once for one; what they wrote before can
-// be read then.
+// be read then. The last to come turns the round over, which lets the others go; they
+// compare with the round that they saw before they came. So a thread that runs ahead
+// into the next wait cannot be mistaken for one of this.
 static inline void barrier_wait(struct barrier *barrier)
 {
     enum { PATIENCE = 2000 }; // looks, some microseconds

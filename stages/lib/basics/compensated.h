@@ -9,12 +9,14 @@
 
 #include <math.h>
 
-// The sum is value + lost; {0} is the empty sum, {x} begins at x.
+// The sum is value + lost; {0} is the empty sum, {x} begins at x. Both parts must be
+// kept in a checkpoint: their sum alone would go on with other digits.
 struct compensated {
     double value, lost;
 };
 
-// Adds X, of any sign and size.
+// Adds X, of any sign and size. The error of one addition is exact as computed here,
+// and the errors are summed plainly.
 static inline void compensated_add(struct compensated *sum, double x)
 {
     const double total = sum->value + x;
@@ -29,7 +31,8 @@ static inline double compensated_value(struct compensated sum)
     return sum.value + sum.lost;
 }
 
-// A - B, without a loss of digits however near they are.
+// A - B, without a loss of digits however near they are. Values and lost parts are
+// subtracted separately: two rounded sums would cancel.
 static inline double compensated_difference(struct compensated a, struct compensated b)
 {
     return (a.value - b.value) + (a.lost - b.lost);

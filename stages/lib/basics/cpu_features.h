@@ -7,6 +7,8 @@
 
 #include <stdbool.h>
 
+// The three parts that the kernels use: foundation, doubles and quadwords, vector
+// lengths. Cheap: GCC's runtime found them at the start.
 static inline bool has_avx512(void)
 {
 #if defined __x86_64__

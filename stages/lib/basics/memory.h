@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Allocation that cannot fail quietly: out of memory ends the program with one line and
-// status 70. Everything returned is freed with free().
+// status 70. Everything returned is freed with free(). A program that runs out of
+// memory cannot go on usefully, and no caller needs a branch that no test can reach.
 #ifndef CRAQUELURE_MEMORY_H
 #define CRAQUELURE_MEMORY_H
 
@@ -22,7 +23,7 @@ void *allocate_uncleared(size_t count, size_t size)
 
 // OLD (NULL: none yet) grown or shrunk to COUNT elements of SIZE bytes; what is new is
 // not zeroed. OLD may have moved; not for what allocate_aligned gave, whose alignment
-// it would lose.
+// it would lose. For growing arrays see GROW_ARRAY.
 void *reallocate(void *old, size_t count, size_t size)
     __attribute__((returns_nonnull, warn_unused_result));
 
@@ -34,7 +35,8 @@ void *reallocate(void *old, size_t count, size_t size)
 void *duplicate(const void *source, size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 
-// NEW_ARRAY(double, n): n zeroed doubles.
+// NEW_ARRAY(double, n): n zeroed doubles. Without sizeof at each call, and with the
+// type checked.
 #define NEW_ARRAY(type, count) ((type *)allocate((size_t)(count), sizeof(type)))
 
 // Room for one more at the end of a growing array: capacity doubles, so appending N

@@ -5,8 +5,10 @@
 
 #include <stdbool.h>
 
+// The three choices of --progress.
 enum progress_mode { PROGRESS_AUTO, PROGRESS_ALWAYS, PROGRESS_NEVER };
 
+// A value: nothing to free. All zeros is one that never draws.
 struct progress {
     bool shown;       // whether this run may draw at all
     bool drawn;       // whether there is a line to clear
@@ -15,7 +17,8 @@ struct progress {
     double left;      // s, as shown last; below 0: not yet
 };
 
-// AUTO draws only on a terminal, and only once the work has lasted a second.
+// AUTO draws only on a terminal, and only once the work has lasted a second. QUIET wins
+// over all modes.
 struct progress progress_begin(enum progress_mode mode, bool quiet);
 
 // FRACTION done, 0 to 1. Cheap: draws at most ten times a second.

@@ -47,13 +47,14 @@ typedef float floatw
 typedef double doublew_unaligned
     __attribute__((vector_size(8 * SIMD_WIDTH), aligned(8), may_alias));
 
-// A in every lane.
+// A in every lane. Less 0, not plus 0: -0 - 0 is -0, but -0 + 0 is 0.
 SIMD_INLINE doublew splat(double a)
 {
     return a - (doublew){0};
 }
 
-// From and to addresses that are multiples of the vector's size.
+// From and to addresses that are multiples of the vector's size. At other addresses the
+// program ends: these are for arrays of allocate_aligned and of structs with _Alignas.
 SIMD_INLINE doublew load(const double *p)
 {
     return *(const doublew *)p;
@@ -75,7 +76,8 @@ SIMD_INLINE void store_unaligned(double *p, doublew a)
     *(doublew_unaligned *)p = a;
 }
 
-// A B + C, rounded once.
+// A B + C, rounded once. Where the processor has no such instruction, the C library's
+// fma gives the same digits, slowly.
 SIMD_INLINE doublew fmadd(doublew a, doublew b, doublew c)
 {
 #if defined SIMD_AVX512
@@ -131,6 +133,8 @@ SIMD_INLINE floatw fmadd_float(floatw a, floatw b, floatw c)
 #endif
 }
 
+// The nearest number to the root, as IEEE 754 asks for: the same on all processors. NAN
+// below 0.
 SIMD_INLINE doublew square_root(doublew a) // sqrt may set errno, which no vector does
 {
 #if defined SIMD_AVX512
@@ -176,6 +180,7 @@ typedef int64_t maskw __attribute__((vector_size(8 * SIMD_WIDTH)));
 #endif
 #endif
 
+// Comparisons, lane by lane.
 SIMD_INLINE maskw above(doublew a, doublew b) // A > B
 {
     return SIMD_COMPARE(a, b, _CMP_GT_OQ, a > b);

@@ -6,7 +6,8 @@
 #ifndef CRAQUELURE_SORTED_H
 #define CRAQUELURE_SORTED_H
 
-// For qsort of int and of double; NAN has no place in that order.
+// For qsort of int and of double; NAN has no place in that order. They return -1, 0 or
+// 1.
 static inline int rising_ints(const void *a, const void *b)
 {
     const int first = *(const int *)a, second = *(const int *)b;
@@ -20,7 +21,7 @@ static inline int rising_doubles(const void *a, const void *b)
 }
 
 // Where the first of N sorted numbers is that is not below WANTED; N: none is. Binary
-// search, O(log n).
+// search, O(log n). Of equal numbers the first one.
 static inline int first_not_below(const int *sorted, int n, int wanted)
 {
     int low = 0, high = n;

@@ -9,6 +9,7 @@
 #include "basics/status.h"
 #include "bridges/meridian.h"
 
+// A value; bridge_check says whether it is one.
 struct bridge {
     double radius[2];        // m; INFINITY for a plane, at most one of them
     double contact_angle[2]; // rad, from 0 to less than pi
@@ -16,6 +17,8 @@ struct bridge {
     double volume;           // m3, of the liquid
 };
 
+// The exact solution is the slowest by far; a table of it is as good once it is made.
+// [G 2.1-2.4] has the fits.
 enum bridge_model {
     BRIDGE_EXACT,
     BRIDGE_TABLE,              // bridges/table.h
@@ -42,7 +45,7 @@ enum bridge_flag {
     BRIDGE_UNEQUAL_ANGLES = 16 // the model has one contact angle: their mean cosine
 };
 
-// 2 R1 R2/(R1 + R2) [G 1].
+// 2 R1 R2/(R1 + R2) [G 1]. m; of a plane twice the radius of the sphere.
 double bridge_effective_radius(const struct bridge *bridge);
 
 // STATUS_BAD_DATA: a size or an angle is none, or the volume is too small or large for
@@ -52,12 +55,13 @@ enum status bridge_check(const struct bridge *bridge, struct reason *reason);
 // Volume over the cube of the effective radius.
 double bridge_dimensionless_volume(const struct bridge *bridge);
 
-// [G 2]; with the mean cosine of two contact angles.
+// [G 2]; with the mean cosine of two contact angles. m, between the surfaces.
 double bridge_rupture_distance(const struct bridge *bridge);
 
 // The force of a model other than BRIDGE_EXACT and BRIDGE_TABLE at SEPARATION (m;
 // negative: overlap, where the models keep their value at contact). Beyond rupture it
-// goes on with the model's formula. FLAGS may be NULL.
+// goes on with the model's formula. FLAGS may be NULL. N, positive when it pulls. FLAGS
+// gets a sum of bridge_flag.
 double bridge_model_force(const struct bridge *bridge, enum bridge_model model,
                           double separation, unsigned *flags);
 
@@ -96,7 +100,7 @@ enum status bridge_solve_rupture(const struct bridge *bridge,
                                  struct bridge_state *state, struct reason *reason);
 
 // Its meridian: height above the pole of the first body and radius (m) at COUNT places,
-// at least 2, evenly along it.
+// at least 2, evenly along it. Both (COUNT), in m.
 void bridge_profile(const struct bridge *bridge, const struct bridge_state *state,
                     int count, double *height, double *radius);
 

@@ -16,6 +16,7 @@ struct unknowns {
     double at[ARC_NUMBERS];
 };
 
+// In effective radii. It owns nothing.
 struct problem {
     const struct bodies *bodies;
     double volume; // of the liquid
@@ -30,7 +31,8 @@ struct problem {
 
 #define RESIDUAL_ROUNDING 1e-9 // residuals below may be rounding alone
 
-// Residuals of the equations and their derivatives.
+// Residuals of the equations and their derivatives. SLOPE[i][j] is the derivative of
+// residual i by unknown j; WAIST_SLOPE that of the neck.
 struct system {
     double residual[ARC_NUMBERS], slope[ARC_NUMBERS][ARC_NUMBERS];
     double waist_slope[ARC_NUMBERS];
@@ -51,9 +53,10 @@ struct unknowns moved(const struct unknowns *from, const double step[ARC_NUMBERS
 bool sensible(const struct bodies *bodies, const struct unknowns *unknowns);
 
 // Newton's method, damped. Returns whether it converged; adds the number of its steps
-// to COUNT.
+// to COUNT. Steps are shortened until the residual falls and the unknowns are sensible.
 bool converge(const struct problem *problem, struct unknowns *unknowns, int *count);
 
+// The arc that these unknowns stand for; and back.
 struct arc arc_of(const struct unknowns *unknowns);
 struct unknowns unknowns_of(const struct arc *arc);
 

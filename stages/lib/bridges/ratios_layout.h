@@ -32,6 +32,7 @@ struct range {
     int first, last;
 };
 
+// It owns EQUAL and PATCH.
 struct bridge_ratios {
     struct range equal_range, range[INTERVALS]; // that there are
     bool as_it_is; // equal grains only, and no volume to be taken as another
@@ -39,7 +40,8 @@ struct bridge_ratios {
     struct ratio_patch *patch;  // (HALVES), likewise; NULL: all grains are equal
 };
 
-// The first of the six tables about an interval.
+// The first of the six tables about an interval. At the ends of the range the same six
+// serve several intervals.
 static inline int first_of_stencil(int interval)
 {
     const int first = interval - STENCIL / 2 + 1, most = RATIOS - STENCIL;

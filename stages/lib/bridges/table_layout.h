@@ -31,13 +31,17 @@ enum { TURNING_ORDER = 6, ORDER = 4 }; // coefficients of 1/A, and of all else
 // Patch bits (exponent, and the eighth of an octave) of the least volume.
 static const int LEAST_BITS = (1023 - OCTAVES) * EIGHTHS;
 
-// For one patch of volumes, with u from -1 to 1 across it; two quads.
+// For one patch of volumes, with u from -1 to 1 across it; two quads. One line of the
+// cache.
 struct volume_patch {
     alignas(64) double turning[TURNING_ORDER]; // 1/A as a polynomial in u
     double steepness;                          // 1/C
     double unused;
 };
 
+// Volumes and gaps in effective radii and their cubes, forces in effective radius times
+// surface tension. ERROR is the largest found when it was made, relative to the exact
+// force.
 struct bridge_table {
     double error;
     bool breaks;                // symmetry, somewhere
@@ -47,11 +51,15 @@ struct bridge_table {
     alignas(64) float8 force[VOLUMES][PLACES][2];
 };
 
+// Which patch a volume is in, and where across it: u from -1 to 1.
 struct volume_place {
     int patch;
     double u;
 };
 
+// The upper 15 bits of a double are its sign, exponent and the first three digits of
+// the fraction: octave and eighth. The rest of the fraction, with the exponent of 1, is
+// a number from 1 to 2. Volumes beyond the table count as its ends.
 static inline struct volume_place place_volume(double volume)
 {
     const double most = BRIDGE_TABLE_MOST * (1 - 0x1p-53);
@@ -76,12 +84,14 @@ static inline double patch_volume(int patch, double u)
     (((c)[0] + (u) * (c)[1]) + (u) * (u) * ((c)[2] + (u) * (c)[3]) +                   \
      (u) * (u) * ((u) * (u)) * ((c)[4] + (u) * (c)[5]))
 
+// zeta at rupture in this patch: Horner in pairs, as the vector code adds.
 static inline double end_at(const struct bridge_table *table, struct volume_place at)
 {
     const double *c = table->end[at.patch], u = at.u;
     return (c[0] + u * c[1]) + u * u * (c[2] + u * c[3]);
 }
 
+// Whether a patch has bridges that rupture by a break of symmetry.
 static inline bool breaks_in(const double end[ORDER])
 {
     bool breaks = false;
@@ -96,7 +106,8 @@ static inline double along(double wide)
     return wide + (wide < NARROW ? wide : NARROW);
 }
 
-// The terms of a patch's polynomial, still to be added up.
+// The terms of a patch's polynomial, still to be added up. Four floats, one for each
+// power of w; their sum is F (1 + a/C)^2.
 static inline float4 terms_of(const float8 row[2], float u, float w)
 {
     const float square = w * w;
@@ -107,12 +118,14 @@ static inline float4 terms_of(const float8 row[2], float u, float w)
     return (low + u * high) * powers;
 }
 
+// U and W from -1 to 1.
 struct place {
     int patch, place;
     float u, w;
     double scale; // (1 + a/C)^-2; 0 beyond rupture
 };
 
+// 1 - a/A falls below 0 beyond the turning point: no bridge there, whatever zeta.
 static inline struct place place_of(const struct bridge_table *table, double volume,
                                     double gap)
 {

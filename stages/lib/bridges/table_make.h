@@ -6,10 +6,11 @@
 #include "bridges/equilibrium.h"
 #include "bridges/table_layout.h"
 
-// Chebyshev's node K of COUNT, from 1 down to -1.
+// Chebyshev's node K of COUNT, from 1 down to -1. cos(pi (k + 1/2) / count):
+// polynomials through these oscillate least.
 double chebyshev_node(int k, int count);
 // Interpolates VALUE at COUNT of them, at most TURNING_ORDER; gives the coefficients of
-// powers.
+// powers. VALUE at the nodes in their order.
 void fit_polynomial(const double *value, int count, double *power);
 
 // F (1 + a/C)^2 at the ORDER nodes of all places in zeta, for one volume, with A and C

@@ -12,7 +12,8 @@
 
 enum array_type { ARRAY_FLOAT64, ARRAY_INT32, ARRAY_INT64, ARRAY_UINT8 };
 
-// One array. Longer names are cut.
+// One array. Longer names are cut. Numbers are in the byte order of the machine; the
+// file format takes care of the rest.
 struct named_array {
     char name[32]; // "pair_shear_force"
     enum array_type type;
@@ -26,10 +27,11 @@ struct array_list {
     int count;
 };
 
-// Bytes that one number of TYPE takes.
+// Bytes that one number of TYPE takes. 8, 4, 8 or 1.
 size_t number_size(enum array_type type);
 
-// COUNT zeros, to be freed with free_arrays.
+// COUNT zeros, to be freed with free_arrays. All memory here is that of
+// basics/memory.h: it never fails.
 struct named_array new_array(const char *name, enum array_type type, int64_t count);
 
 // Adds a copy of the COUNT numbers of DATA to LIST; does not look for the name there.
@@ -42,7 +44,8 @@ void free_arrays(struct named_array *array, int count);
 const struct named_array *find_array(const struct named_array *array, int count,
                                      const char *name);
 
-// How many numbers are called NAME, 0 when there are none.
+// How many numbers are called NAME, 0 when there are none. For lengths that the reader
+// does not know before.
 int64_t array_count(const struct array_list *list, const char *name);
 
 // Whether ARRAY, which may be NULL, is of TYPE and has COUNT numbers from LEAST to
@@ -53,6 +56,7 @@ enum status check_array(const struct named_array *array, const char *name,
 
 // Reads LIST; after the first array that is not as it should be, nothing any more, so
 // that a caller reads all it needs and asks `failed` once. Begin with the first two.
+//     struct array_reader reader = {list, reason, false};
 struct array_reader {
     const struct array_list *list;
     struct reason *reason; // of that

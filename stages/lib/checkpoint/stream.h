@@ -11,14 +11,16 @@
 
 #include <stdint.h>
 
-// Values of one type, one after the other. Kept: owned, room for CAPACITY.
+// Values of one type, one after the other. Kept: owned, room for CAPACITY. While
+// restoring DATA belongs to the list that is read.
 struct value_list {
     void *data;
     int64_t n, capacity; // read: up to CAPACITY, N of them so far
 };
 
 // Values have no names: they are read in the order in which they were written, so a
-// NAME_state function must not branch on anything but what it has already passed.
+// NAME_state function must not branch on anything but what it has already passed. After
+// a failure all that is read is 0, so that no caller needs to ask before the end.
 struct checkpoint_stream {
     bool restoring;
     bool failed; // restoring: there was less, or other, than must be; zeros since then
@@ -27,14 +29,16 @@ struct checkpoint_stream {
 
 // What a run goes on from, kept or restored by the same calls: NAME_state(..., STREAM)
 // writes what NAME has, or reads it. The caller frees with stream_free; LIST must live
-// as long. The lists have PREFIX_numbers, PREFIX_integers and PREFIX_bytes.
+// as long. The lists have PREFIX_numbers, PREFIX_integers and PREFIX_bytes. Three types
+// are kept apart because each becomes one array of an artifact.
 struct checkpoint_stream stream_to_keep(void);
 struct checkpoint_stream stream_to_restore(const struct array_list *list,
                                            const char *prefix);
 
 // Each writes N values at AT, or reads them; AT has room for N. Integers lie from LEAST
 // to MOST, bytes from 0 to MOST; a state with others has failed. Bounds are checked on
-// reading only. Numbers are any doubles: their caller checks them.
+// reading only. Numbers are any doubles: their caller checks them. A flag is a byte of
+// 0 or 1, a compensated sum two numbers, a 64-bit integer a double.
 void stream_numbers(struct checkpoint_stream *stream, double *at, int64_t n);
 void stream_sums(struct checkpoint_stream *stream, struct compensated *at, int64_t n);
 void stream_integers(struct checkpoint_stream *stream, int32_t *at, int64_t n,
@@ -46,7 +50,8 @@ void stream_integer(struct checkpoint_stream *stream, int *at, int least, int mo
 void stream_long(struct checkpoint_stream *stream, int64_t *at); // 0 to 2^53
 
 // ARRAY, with N elements of SIZE bytes, is written next: makes room for as many as are
-// read (up to 2^31), and says how many in N.
+// read (up to 2^31), and says how many in N. Returns ARRAY, moved or not; a count
+// beyond what the stream holds fails, and asks for no memory.
 void *stream_room(struct checkpoint_stream *stream, void *array, int64_t *n,
                   size_t size);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The balances of a network of conductances (its graph Laplacian): a symmetric positive
-// definite M-matrix once some sites have a given potential.
+// definite M-matrix once some sites have a given potential. Sites are pores or nodes,
+// links throats. With x the potentials (pressures) row i says that the flows sum_k
+// value_k (x_column(k) - x_i) balance what is given. All conductances are in one unit,
+// potentials in one, flows in their product.
 #ifndef CRAQUELURE_CONDUCTANCE_MATRIX_H
 #define CRAQUELURE_CONDUCTANCE_MATRIX_H
 
@@ -13,7 +16,8 @@ struct link {
 };
 
 // Row i is diagonal_i x_i - sum value_k x_column(k). Columns from N on are sites where
-// x is given; the solvers take x to be 0 there.
+// x is given; the solvers take x to be 0 there. It owns its arrays. Both directions of
+// a link between two unknown sites are there.
 struct conductance_matrix {
     int n, n_all;
     int *offset;      // (n+1)
@@ -23,7 +27,8 @@ struct conductance_matrix {
 };
 
 // The balances of the first N of N_ALL sites. A row has its links in their order,
-// parallel ones separately. The caller frees it with conductance_matrix_free.
+// parallel ones separately. The caller frees it with conductance_matrix_free. O(n +
+// n_link). Links between two given sites are in no row.
 struct conductance_matrix conductance_matrix_of_links(int n, int n_all, int n_link,
                                                       const struct link *link);
 void conductance_matrix_free(struct conductance_matrix *matrix);

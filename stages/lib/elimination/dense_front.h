@@ -18,7 +18,8 @@ enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576 };
 // fit; the entries at and above the diagonal have no meaning.
 //
 // The updates of a large one are pending until there are many, and then one pass over
-// the entries adds all of them.
+// the entries adds all of them. It owns ENTRY, FACTOR and PENDING. {0} is an empty
+// small one.
 struct dense_front {
     bool is_large;
     bool is_rounded; // large: floats
@@ -31,7 +32,8 @@ struct dense_front {
 };
 
 // Index of the first entry of row I. With panel = I / PANEL, large ones have rows of
-// (panel + 1) PANEL numbers, small ones of I.
+// (panel + 1) PANEL numbers, small ones of I. Numbers before row I: I (I - 1) / 2 where
+// packed; else those of the panels before, and of the rows of the own panel.
 static inline size_t dense_front_row(const struct dense_front *dense, int i)
 {
     const size_t row = (size_t)i, panel = row / PANEL;
@@ -39,7 +41,8 @@ static inline size_t dense_front_row(const struct dense_front *dense, int i)
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
-// Entry (I, J), J < I, without pending updates.
+// Entry (I, J), J < I, without pending updates. In double precision, whatever entries
+// are.
 static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
 {
     const size_t at = dense_front_row(dense, i) + (size_t)j;
@@ -57,30 +60,37 @@ static inline void dense_front_set(struct dense_front *dense, int i, int j, doub
         ((double *)dense->entry)[at] = x;
 }
 
-// Adds row N, of zeros, to N rows.
+// Adds row N, of zeros, to N rows. Room grows by half, so that many rows cost little
+// more than their entries.
 void dense_front_add_row(struct dense_front *dense, int n);
 
-// Copies row and column P of N rows into ROW (n), pending updates included; 0 at P.
+// Copies row and column P of N rows into ROW (n), pending updates included; 0 at P. O(n
+// + n n_pending).
 void dense_front_copy_row(const struct dense_front *dense, int n, int p, double *row);
 
 // Row and column P become those of the last of N rows, which goes. Pending rows too.
+// Entries may be in another order afterwards, so whoever numbers the rows must move its
+// last one, too.
 void dense_front_remove(struct dense_front *dense, int n, int p);
 
 // Turns a small one of N rows into a large one, whose entries are floats if it IS
-// ROUNDED: half the memory, seven digits.
+// ROUNDED: half the memory, seven digits. It stays large when rows go.
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded);
 
-// Adds FACTOR ROW[i] ROW[j] to each entry of N rows.
+// Adds FACTOR ROW[i] ROW[j] to each entry of N rows. Small: at once, O(n^2). Large:
+// kept, until MAX_PENDING of them are added in one pass over memory.
 void dense_front_add_products(struct dense_front *dense, int n, double factor,
                               const double *row);
 
 // Adds all pending updates to the entries.
 void dense_front_flush(struct dense_front *dense, int n);
 
-// Keeps or restores N rows of doubles, entries and pending updates as they are.
+// Keeps or restores N rows of doubles, entries and pending updates as they are. Pending
+// ones are not flushed for it, as that would change the rounding of what follows.
 void dense_front_state(struct dense_front *dense, int n,
                        struct checkpoint_stream *stream);
 
+// What it owns; it is empty then.
 void dense_front_free(struct dense_front *dense);
 
 // Kernels of large fronts by type of entry and processor; the digits are the same. A

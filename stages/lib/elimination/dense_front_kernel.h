@@ -32,14 +32,16 @@ static const NUMBER *pending_block(const struct dense_front *dense, int first)
     return (const NUMBER *)dense->pending + (size_t)first * MAX_PENDING;
 }
 
-// TILE_ROWS rows of the entries, and their weights.
+// TILE_ROWS rows of the entries, and their weights. Rows are those of one panel, so
+// they have one length.
 struct tile {
     NUMBER *row[TILE_ROWS];
     const NUMBER *weight; // (n_pending, TILE_ROWS)
 };
 
 // row[r][c] += sum_k weight[k][r] pending[k][c] for VECTORS vectors from COLUMN on. The
-// sum starts from 0 and is added at once.
+// sum starts from 0 and is added at once. memcpy, because PENDING need not be aligned
+// for a vector; compilers make one load of it.
 static inline void add_to_tile(const struct tile *tile, int column, int n_pending,
                                const NUMBER *pending)
 {
@@ -66,6 +68,8 @@ static inline void add_to_tile(const struct tile *tile, int column, int n_pendin
 }
 
 // Rows BEGIN..END-1, columns FIRST..FIRST+BLOCK-1. WEIGHT: (rows, n_pending) by tiles.
+// Rows above FIRST have no entries in these columns. The rows of the next tile are
+// prefetched: they lie a whole row apart, which the processor does not foresee.
 static void add_to_block(const struct dense_front *dense, int begin, int end, int first,
                          const NUMBER *weight)
 {
@@ -90,7 +94,8 @@ static void add_to_block(const struct dense_front *dense, int begin, int end, in
     }
 }
 
-// factor[k] pending[k][i] for rows BEGIN..END-1, by tiles.
+// factor[k] pending[k][i] for rows BEGIN..END-1, by tiles. In the order in which tiles
+// read them.
 static void pack_weights(const struct dense_front *dense, int begin, int end,
                          NUMBER *weight)
 {
@@ -102,7 +107,8 @@ static void pack_weights(const struct dense_front *dense, int begin, int end,
     }
 }
 
-// Rows in portions whose weights stay in the second-level cache.
+// Rows in portions whose weights stay in the second-level cache. The weight array is
+// the only allocation.
 void PASS(struct dense_front *dense, int n)
 {
     enum { ROWS = 4 * BLOCK };
@@ -117,6 +123,7 @@ void PASS(struct dense_front *dense, int n)
 }
 
 // row[c] += sum_k weight[k] pending[k][c] for columns below N, three vectors at a time.
+// ROW stays in doubles where entries are floats.
 void GATHER(const struct dense_front *dense, int n, const double *weight, double *row)
 {
     for (int first = 0; first < n; first += BLOCK) {

@@ -10,21 +10,23 @@
 #include <stddef.h>
 
 // An edge as one of its vertices sees it. Weights are relative to the largest at the
-// start.
+// start. A float: the factor only preconditions, and two fit where one double would.
 struct half_edge {
     float weight;
     int to; // n of the graph: a place where the pressure is given
 };
 
 // A vertex: its edges are half[first] to half[first + count - 1], in no order, each
-// neighbour once.
+// neighbour once. A row that needs more than CAPACITY moves to the end of HALF.
 struct vertex {
     int first, count, capacity;
     bool eliminated, neighbour_eliminated; // beside: a neighbour went since the graph
                                            // was last packed
 };
 
-// Given places are one vertex, n, without a row: edges to it are ground.
+// Given places are one vertex, n, without a row: edges to it are ground. It owns its
+// arrays. Vertices are numbered anew when the graph is compacted; INDEX says what they
+// were.
 struct elimination_graph {
     int n;
     struct vertex *vertex; // (n)
@@ -34,7 +36,7 @@ struct elimination_graph {
 };
 
 // The graph of MATRIX, whose largest conductance is MAX_WEIGHT. The caller frees it
-// with elimination_graph_free.
+// with elimination_graph_free. Parallel links become one edge.
 struct elimination_graph elimination_graph_of(const struct conductance_matrix *matrix,
                                               double max_weight);
 void elimination_graph_free(struct elimination_graph *graph);
@@ -48,7 +50,8 @@ void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
 void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
                                    int eliminated);
 
-// Drops the eliminated vertices; the others are renumbered in the same order.
+// Drops the eliminated vertices; the others are renumbered in the same order. INDEX
+// follows.
 void elimination_graph_compact(struct elimination_graph *graph);
 
 #endif

@@ -13,7 +13,8 @@
 
 struct kron_row;
 
-// Room that is kept from network to network, beginning as {0}.
+// Room that is kept from network to network, beginning as {0}. It grows as networks do
+// and is freed once, with kron_free.
 struct kron {
     int n_node,
         n_end; // sites 0..n_node-1 are nodes, the next n_end are of given potential
@@ -28,11 +29,12 @@ struct kron {
 void kron_begin(struct kron *kron, int n_node, int n_end);
 
 // Adds to the conductance between two sites, above 0; to what is taken from one, 0 or
-// more.
+// more. Sites count from 0, nodes first.
 void kron_link(struct kron *kron, int a, int b, double conductance);
 void kron_extract(struct kron *kron, int site, double rate);
 
 // Eliminates all nodes, those of few neighbours first. Each must have a way to an end.
+// O(n d^2) for n nodes of d neighbours at their elimination.
 void kron_eliminate(struct kron *kron);
 
 // What flows out of the network at end A (counted from 0), where DROP(CONTEXT, B, A) is
@@ -45,6 +47,7 @@ double kron_flow(const struct kron *kron, int a,
 // the nodes.
 void kron_potentials(const struct kron *kron, double *potential);
 
+// What it owns; it is {0} then.
 void kron_free(struct kron *kron);
 
 #endif

@@ -21,6 +21,7 @@
 struct front;
 struct membership; // a site's place on a front
 
+// It owns its arrays, with room for the capacities named beside them.
 struct kron_fronts {
     int n_site;
     bool is_rounded;            // links on large fronts are floats
@@ -50,11 +51,12 @@ struct kron_fronts {
     int widest;        // sites on one
 };
 
-// No links yet. ROUNDED: links on large fronts are kept as floats.
+// No links yet. ROUNDED: links on large fronts are kept as floats. The caller frees it
+// with kron_fronts_free.
 struct kron_fronts kron_fronts_init(int n_site, bool is_rounded);
 
 // Adds to the conductance between A and B, of which none has been eliminated, or
-// between SITE and the air.
+// between SITE and the air. CONDUCTANCE > 0, in any one unit.
 void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductance);
 void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance);
 
@@ -64,7 +66,8 @@ void kron_fronts_eliminate(struct kron_fronts *fronts, int site);
 // Adds the pending updates of the fronts of SITE; before kron_fronts_list_links.
 void kron_fronts_flush(struct kron_fronts *fronts, int site);
 
-// Does that everywhere, and lists all links; before kron_fronts_add_flows.
+// Does that everywhere, and lists all links; before kron_fronts_add_flows. Lists hold
+// until the next elimination.
 void kron_fronts_list(struct kron_fronts *fronts);
 
 // Adds to FLOW (n_site) the flow to each site from the others when sites have the
@@ -77,6 +80,7 @@ void kron_fronts_add_flows(const struct kron_fronts *fronts, const double *level
 int kron_fronts_list_links(const struct kron_fronts *fronts, int site, int *other,
                            double *link);
 
+// Keeps or restores all of it.
 void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
 
 // Whether fronts and memberships of a restored state agree.

@@ -5,14 +5,16 @@
 
 #include "dense_front.h"
 
-// One for each site on each front, in a list per site (kron_fronts.first).
+// One for each site on each front, in a list per site (kron_fronts.first). Unused ones
+// are a list of their own, so that no index ever moves.
 struct membership {
     int front, place;
     int next; // of the site, or of those unused; -1: the last
 };
 
 // Sites that are all linked with each other: entry (i, j) of `dense` is the conductance
-// between site[i] and site[j].
+// between site[i] and site[j]. It owns SITE and DENSE. NEXT_UNUSED links those that
+// were merged into another.
 struct front {
     int n, capacity;
     int *site;                // (n)

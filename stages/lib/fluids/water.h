@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Water, from 273.16 K to 373.15 K: the equations of IAPWS (fluids.h names the
 // releases), each of a temperature in K. Density and viscosity are those at 0.1 MPa.
-// The range is not checked here: fluid_value does.
+// The range is not checked here: fluid_value does. Other liquids are in fluids.h, which
+// calls this for water.
 #ifndef CRAQUELURE_WATER_H
 #define CRAQUELURE_WATER_H
 

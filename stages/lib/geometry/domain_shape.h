@@ -13,7 +13,8 @@
 enum body_shape { BODY_BOX, BODY_CYLINDER, BODY_SPHERE, BODY_DISC, BODY_SHAPES };
 
 // A cylinder stands along z, a disc (of a layer of grains) along y; both end at lower
-// and upper. The radius of a round body is half its width along x.
+// and upper. The radius of a round body is half its width along x. As in /domain/bodies
+// of a packing.
 struct body {
     uint8_t shape;              // enum body_shape
     uint8_t within;             // 1 where the grains lie in it, 0 around it
@@ -45,7 +46,8 @@ bool body_span(const struct body *body, struct vector from, struct vector to,
 // box along z.
 struct vector body_outward(const struct body *body, struct vector x);
 
-// The point of its surface, ends included, nearest to X, in it or outside.
+// The point of its surface, ends included, nearest to X, in it or outside. Where
+// several are as near (X on an axis), one of them.
 struct vector body_nearest(const struct body *body, struct vector x);
 
 // The nearest point of the round side alone, which goes on beyond the ends of a

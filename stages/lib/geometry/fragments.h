@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+// It owns both arrays.
 struct fragments {
     int n;
     int32_t *of;   // (n) the lowest grain of its fragment
@@ -17,7 +18,8 @@ struct fragments {
 struct fragments fragments_init(int n);
 void fragments_free(struct fragments *fragments);
 
-// Found in three calls: begin, join for each intact bond, end.
+// Found in three calls: begin, join for each intact bond, end. Each costs nearly O(n +
+// bonds) in all (basics/disjoint_sets.h).
 void fragments_begin(struct fragments *fragments);
 void fragments_join(struct fragments *fragments, int grain, int other);
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which repetition of a periodic box something lies in: whole boxes along x, y, z.
-// {0, 0, 0} is the box itself. Seen from A, B lies in the image of B less that of A;
-// seen from B, A lies in the opposite one. Sums of images that are not far stay within
-// int8_t; whether they are not far again, is_far says.
+// Which repetition of a periodic box something lies in: whole boxes along x, y, z. {0,
+// 0, 0} is the box itself. Seen from A, B lies in the image of B less that of A; seen
+// from B, A lies in the opposite one. Sums of images that are not far stay within
+// int8_t; whether they are not far again, is_far says. Why not positions outside of the
+// box: an image is exact, so a network across a side closes on itself without rounding.
 #ifndef CRAQUELURE_IMAGE_H
 #define CRAQUELURE_IMAGE_H
 
@@ -11,11 +12,12 @@
 
 enum { FARTHEST_IMAGE = 3 }; // what three bits a direction can hold
 
+// Three bytes: there is one for each throat and node.
 struct image {
     int8_t along[3];
 };
 
-// A + B, and A - B.
+// A + B, and A - B. Images add as vectors do: B from A and C from B give C from A.
 static inline struct image image_sum(struct image a, struct image b)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -51,8 +53,8 @@ static inline bool is_far(struct image a)
     return false;
 }
 
-// A number that orders images as their components do; different for images that are
-// not far.
+// A number that orders images as their components do; different for images that are not
+// far. Base 7, from -171 to 171.
 static inline int32_t image_number(struct image a)
 {
     enum { STEP = 2 * FARTHEST_IMAGE + 1 };

@@ -9,12 +9,13 @@
 #include <stdbool.h>
 
 // The box along each axis: PERIOD 0 where it does not repeat, and then as wide as the
-// places in it.
+// places in it. LOWER counts only where it repeats.
 struct box_of_places {
     double lower[3], period[3]; // m
 };
 
-// Cells are numbered with z fastest.
+// Cells are numbered with z fastest. It owns OFFSET and MEMBER. Members are indices of
+// the N places, also if only some are chosen.
 struct linked_cells {
     int count[3]; // along each axis
     double lower[3], per_length[3];
@@ -24,13 +25,14 @@ struct linked_cells {
 
 // Those of N places that CHOSEN (NULL: all) lists, N_CHOSEN of them, rising, in cells
 // of WIDTH > 0 or more, about as many as places at most. O(n). The caller frees it with
-// linked_cells_free.
+// linked_cells_free. PLACE and CHOSEN are only read here.
 struct linked_cells linked_cells_init(const struct box_of_places *box, int n,
                                       const struct vector *place, int n_chosen,
                                       const int *chosen, double width);
 void linked_cells_free(struct linked_cells *cells);
 
-// Which cell X lies in along AXIS; beyond the cells the last one, unless they repeat.
+// Which cell X lies in along AXIS; beyond the cells the last one, unless they repeat. 0
+// to count - 1.
 int cell_along(const struct linked_cells *cells, int axis, double x);
 
 // Index in OFFSET of the cell that CELL counts along the axes.

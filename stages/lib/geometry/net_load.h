@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What would move an aggregate that nothing holds as one, and how it is taken off.
+// What would move an aggregate that nothing holds as one, and how it is taken off. The
+// liquid in a free body pulls its grains against each other, so its net load is
+// rounding and the errors of a model; with nothing to hold the body even that would
+// accelerate it away.
 #ifndef CRAQUELURE_NET_LOAD_H
 #define CRAQUELURE_NET_LOAD_H
 
 #include "geometry/packing.h"
 
 // N, and N m about the lower corner of the box; the moment means nothing where the box
-// repeats.
+// repeats. As loads on the grains.
 struct net_load {
     struct vector force, moment;
 };
@@ -47,7 +50,8 @@ struct whole {
     struct vector inertia[3];          // rows of the tensor about it
 };
 
-// What belongs to the grains that are not gone, where DISPLACEMENT has moved them.
+// What belongs to the grains that are not gone, where DISPLACEMENT has moved them. A
+// value: nothing to free.
 struct whole whole_of(const struct packing *packing, const bool *is_gone,
                       const struct vector *displacement);
 double whole_mass(const struct whole *whole, int grain);         // 0 if it is gone

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A packing of spherical grains in a box, with the bonds between them: what packing.h5
-// holds, in memory.
+// holds, in memory. Coordinates are those of the artifact: m, from any origin. Grains
+// may stick out of the box.
 #ifndef CRAQUELURE_PACKING_H
 #define CRAQUELURE_PACKING_H
 
@@ -33,7 +34,8 @@ enum grain_kind {
     GRAIN_AUXILIARY = 1 // not there: only gives the boundary layer its nodes [K 3.3.5]
 };
 
-// It owns its arrays. Their rows are those of /particles and /bonds.
+// It owns its arrays. Their rows are those of /particles and /bonds. packing_free frees
+// it, also one that was filled in part.
 struct packing {
     int n_particle;
     struct vector *position; // (n_particle) m
@@ -64,14 +66,16 @@ static inline int body_wall(const struct body *body)
 }
 
 // The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's; X
-// itself where there is no such body).
+// itself where there is no such body). m. Of the flat walls: X with one coordinate
+// changed.
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x);
 
 // Body K in the repetition of the box nearest to X, going on beyond the sides of the
 // box that it reaches.
 struct body body_near(const struct packing *packing, int k, struct vector x);
 
-// From something in the box to what it repeats IMAGE boxes away; m.
+// From something in the box to what it repeats IMAGE boxes away; m. Each component is a
+// whole number of edges.
 struct vector image_offset(const struct packing *packing, struct image image);
 
 // From FROM to what TO repeats IMAGE boxes away; exactly opposite when seen from there.

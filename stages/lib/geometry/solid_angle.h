@@ -7,7 +7,8 @@
 #include "geometry/vector.h"
 
 // A number whose argument is half a solid angle. Two multiplied add their angles, so a
-// polygon takes one arc tangent.
+// polygon takes one arc tangent. Neither part is normalised: only their quotient
+// counts.
 struct half_angle {
     double real, imaginary;
 };
@@ -16,7 +17,8 @@ struct half_angle {
 // from outside: with a, b, c the lengths of U, V, W
 //     tan(Omega / 2) = (U x V).W / (a b c + (U.V) c + (V.W) a + (W.U) b),
 // numerator and denominator being the imaginary and the real part. No length may be 0
-// for the angle to mean something.
+// for the angle to mean something. Both parts scale with the cube of lengths: in units
+// of a grain's radius products of many neither overflow nor vanish.
 static inline struct half_angle half_solid_angle(struct vector u, struct vector v,
                                                  struct vector w)
 {

@@ -15,7 +15,8 @@ struct sphere {
 };
 
 // A sphere is listed in every cell that it comes near, so a search looks into one cell,
-// or into those that a longer way crosses. Cells are numbered with z fastest.
+// or into those that a longer way crosses. Cells are numbered with z fastest. It owns
+// OFFSET and SPHERE; m.
 struct sphere_cells {
     int count[3]; // of cells along each axis
     bool repeats[3];
@@ -29,6 +30,7 @@ struct sphere_cells {
 
 // O(n_particle), in time and memory: the more grains overlap, the fewer cells. Grains
 // of kind GRAIN_AUXILIARY are not there. The caller frees it with sphere_cells_free.
+// The packing is copied from, and may be freed before.
 struct sphere_cells sphere_cells_init(const struct packing *packing);
 void sphere_cells_free(struct sphere_cells *cells);
 

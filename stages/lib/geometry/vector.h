@@ -2,19 +2,23 @@
 // Vectors in three dimensions, by value. An array of struct vector has the layout of an
 // (n,3) dataset of doubles. Nothing is scaled: squares of lengths must neither overflow
 // nor vanish: lengths from about 1e-150 to 1e150, in whatever unit they are. All are
-// plain sums and products in the order written, so the same digits everywhere.
+// plain sums and products in the order written, so the same digits everywhere. By
+// value, because compilers keep three doubles in registers; small names, because
+// formulas are read more often than written.
 #ifndef CRAQUELURE_VECTOR_H
 #define CRAQUELURE_VECTOR_H
 
 #include <assert.h>
 #include <math.h>
 
+// In the unit of the context: m, N, m/s, or scaled.
 struct vector {
     double x, y, z;
 };
 
 static_assert(sizeof(struct vector) == 3 * sizeof(double), "an (n,3) dataset");
 
+// A + B; below A - B, and S times A.
 static inline struct vector add(struct vector a, struct vector b)
 {
     return (struct vector){a.x + b.x, a.y + b.y, a.z + b.z};
@@ -30,6 +34,7 @@ static inline struct vector scale(double s, struct vector a)
     return (struct vector){s * a.x, s * a.y, s * a.z};
 }
 
+// x, y, z in this order, not fused.
 static inline double dot(struct vector a, struct vector b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
@@ -65,6 +70,7 @@ static inline double component(struct vector a, int axis)
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }
 
+// Changes one of A, the others stay.
 static inline void set_component(struct vector *a, int axis, double value)
 {
     *(axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z) = value;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a network must be for gas to come in. On STATUS_BAD_DATA the reason names the
-// dataset and row, or the parameter.
+// dataset and row, or the parameter. Checked by those who are about to divide by a
+// radius, not when a network is read: a network with a shut throat is fine for looking
+// at.
 #ifndef CRAQUELURE_NETWORK_CHECKS_H
 #define CRAQUELURE_NETWORK_CHECKS_H
 
@@ -11,7 +13,8 @@
 enum status check_throat_radius(const struct network *network, int throat,
                                 struct reason *reason);
 
-// STATUS_BAD_DATA: GRAVITY (m/s2) pulls along z, but the box repeats there.
+// STATUS_BAD_DATA: GRAVITY (m/s2) pulls along z, but the box repeats there. GRAVITY of
+// 0 is always fine.
 enum status check_gravity(const struct network *network, double gravity,
                           struct reason *reason);
 

@@ -23,7 +23,7 @@ enum clearance {
 // [K 3.7, 3.8], m; below 0 where they overlap. With t the share of the way from END[0]
 // to END[1] at which the centre's foot lies (cut to 0..1 but for CLEARANCE_LINE),
 //     clearance = |centre - (end[0] + t (end[1] - end[0]))| - radius.
-// A throat without length is a point.
+// A throat without length is a point. m throughout.
 static inline double clearance_of(struct vector centre, double radius,
                                   const struct vector end[2], enum clearance how)
 {
@@ -35,7 +35,8 @@ static inline double clearance_of(struct vector centre, double radius,
     return norm(subtract(to, scale(t, along))) - radius;
 }
 
-// What is known of the clearance of a throat, m.
+// What is known of the clearance of a throat, m. LARGEST is the bound for those that
+// least_clearance looks for.
 struct clear_way {
     double least;   // to the grains seen so far
     double largest; // radius of the grains beside it

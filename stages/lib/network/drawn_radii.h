@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Throat radii that a stage may draw instead of taking those of the network: its rows
-// of the parameter table, and what they fill.
+// of the parameter table, and what they fill. DRAWN_RADII_ROWS are rows for such a
+// table: `invade` and `dry` take them, so that a draw is called the same in both.
 #ifndef CRAQUELURE_DRAWN_RADII_H
 #define CRAQUELURE_DRAWN_RADII_H
 
 #include "network/throat_radius.h"
 #include "parameters/parameters.h"
 
-// What the rows below fill. In `how`, law and seed are not used: the two here are.
+// What the rows below fill. In `how`, law and seed are not used: the two here are. m;
+// correlation_length as well.
 struct drawn_radii {
     int law; // 0: as in the network; the others are those of enum radius_law, from 1
     int64_t seed;
@@ -16,7 +18,7 @@ struct drawn_radii {
 
 // Gives NETWORK the radii that were asked for, if any were. STATUS_BAD_DATA as
 // draw_radii, and where none are drawn but PARAMETERS, the stage's effective ones, say
-// how.
+// how. Throats become cylinders of the new radii.
 enum status give_radii(struct network *network, const struct drawn_radii *radii,
                        const json_t *parameters, struct reason *reason);
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What every program's command line has alike: --help, --version, an error in one line.
+// Errors of the command line are exits with 64 and one line, here and nowhere else; GNU
+// argp prints help and reads options.
 #ifndef CRAQUELURE_COMMAND_LINE_H
 #define CRAQUELURE_COMMAND_LINE_H
 
@@ -22,7 +24,7 @@ error_t parse_common_option(int key, struct argp_state *state, const char *progr
 void parse_command_line(const struct argp *argp, int argc, char **argv, void *input);
 
 // The number that TEXT is, all of it. Exits (64) unless it is from LEAST to MOST;
-// OPTION names it in the message.
+// OPTION names it in the message. OPTION as the user writes it, "--threads".
 long whole_of_option(const char *option, const char *text, long least, long most);
 double number_of_option(const char *option, const char *text, double least,
                         double most);

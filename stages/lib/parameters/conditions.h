@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a body dries of and in: the liquid, the air, the temperature. A scene says it
 // once, in its section "conditions"; a stage whose own section says nothing else takes
-// it from there. What neither gives is that of the named liquid at the temperature.
+// it from there. What neither gives is that of the named liquid at the temperature. The
+// macros below are rows of tables: written once, so that a key has the same unit,
+// default and help in each stage that takes it.
 #ifndef CRAQUELURE_CONDITIONS_OF_SCENE_H
 #define CRAQUELURE_CONDITIONS_OF_SCENE_H
 
@@ -11,7 +13,7 @@
 
 // Life of one: a stage's table fills it by the rows below, NAN where a user gave
 // nothing; conditions_complete fills in the rest; conditions_describe and _note tell
-// the user what holds.
+// the user what holds. A value: nothing to free.
 struct conditions {
     int fluid;            // enum fluid
     double temperature;   // K
@@ -40,7 +42,7 @@ void conditions_share(json_t *section, const struct parameter *table,
 // neither it nor the humidity was). One that is not known stays NAN. STATUS_BAD_DATA,
 // with the key: a temperature below 200 K; a property with its bit in NEEDED that is
 // not known, or not at this temperature; humidity of another liquid than water, or
-// beside the vapour pressure.
+// beside the vapour pressure. NEEDED has bit k for property k (enum fluid_property).
 enum status conditions_complete(struct conditions *conditions, unsigned needed,
                                 struct reason *reason);
 
@@ -50,7 +52,7 @@ void conditions_require(struct conditions *conditions, unsigned needed,
 
 // One line into TEXT (SIZE bytes), which is returned: the liquid by name, temperature,
 // and those properties with their bit in SHOWN; beside a given one also the liquid's
-// own.
+// own. For the model text of artifacts: what the drying was done with, by name.
 const char *conditions_describe(const struct conditions *conditions, unsigned shown,
                                 char *text, size_t size);
 

@@ -42,6 +42,7 @@ struct named_rows {
     const char **name; // (count)
     void *row;         // (count) structs of ROW_SIZE bytes
 };
+// Rows that hold lists own nothing more.
 void named_rows_free(struct named_rows *rows);
 // The number of NAME among them, or -1.
 int named_row(const struct named_rows *rows, const char *name);
@@ -49,6 +50,7 @@ int named_row(const struct named_rows *rows, const char *name);
 // How the bounds are read.
 enum parameter_bound { BOUND_NONE, BOUND_MINIMUM, BOUND_ABOVE, BOUND_BETWEEN };
 
+// Rows are static; nothing in them is freed.
 struct parameter {
     const char *key; // "boundary_layer.layers": dots walk into objects
     enum parameter_type type;
@@ -78,10 +80,11 @@ struct parameter {
 
 // Reads SECTION (an object; may be NULL: all defaults) by TABLE, checks every entry and
 // fills the stage's struct PARAMETERS. WHERE names the file and section in messages.
-// Reports every problem on stderr, one line each, then exits 65 if there was one.
-// Keys named "comment" are skipped at every level.
-// Returns all effective parameters, defaults filled in; the caller owns the reference
-// and keeps it as long as the struct is used (it holds the texts).
+// Reports every problem on stderr, one line each, then exits 65 if there was one. Keys
+// named "comment" are skipped at every level. Returns all effective parameters,
+// defaults filled in; the caller owns the reference and keeps it as long as the struct
+// is used (it holds the texts). Every member of the struct is set, so it need not be
+// cleared before.
 json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters);
 

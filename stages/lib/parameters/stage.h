@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The command line every stage shares:
 //     STAGE [options] [-p PARAMS.json] [INPUT...] [-o OUTPUT]
+// A stage is a main of this form: stage_begin, open inputs, compute, write the
+// artifact, invocation_free. All that a user can say is in struct invocation and in the
+// stage's own struct.
 #ifndef CRAQUELURE_STAGE_H
 #define CRAQUELURE_STAGE_H
 
@@ -9,7 +12,7 @@
 
 #include <stdbool.h>
 
-// What a stage says of itself.
+// What a stage says of itself. A static constant of the program.
 struct stage {
     const char *name;
     int version;         // raised when results may change

@@ -25,11 +25,15 @@ enum contact_state {
     CONTACT_NEW // closed since the last equilibrium: no shear force yet
 };
 
+// Its shear force is shear_stiffness times (deformation - anchor): slip moves the
+// anchor, so that the history is two numbers.
 struct contact {
     enum contact_state state;
     double anchor[2]; // shear deformation at which the shear spring is free
 };
 
+// In the units of the engine (displacement.h). All but the last block is set when the
+// pair is made and changes only as a bond breaks.
 struct contact_pair {
     int32_t grain[2];      // the second is -1 for the wall
     int32_t bond;          // as numbered in the packing, or -1
@@ -54,7 +58,9 @@ struct contact_pair {
     struct contact contact;
 };
 
-// The loads with which a pair resists, and their derivatives.
+// The loads with which a pair resists, and their derivatives. SLOPE is not symmetric
+// where the contact slips: shear forces follow the normal force, not the other way
+// round.
 struct pair_response {
     double load[COMPONENTS];
     double slope[3][3]; // of the three forces with the first three components
@@ -93,12 +99,13 @@ struct displacement pair_kinematic_row(const struct contact_pair *pair, int end,
 struct displacement pair_load_on_grain(const struct contact_pair *pair, int end,
                                        const double load[COMPONENTS]);
 
-// Subtracts those of both grains from RESIDUAL (n).
+// Subtracts those of both grains from RESIDUAL (n). On the second grain of a pair with
+// the wall nothing acts.
 void pair_subtract_load(const struct contact_pair *pair, const double load[COMPONENTS],
                         struct displacement *residual);
 
 // Stress over strength of an intact bond at DEFORMATION [K 4.41, 4.42]; of a contact
-// bond, force over strength.
+// bond, force over strength. 1 breaks it (FAILURE_THRESHOLD leaves room for rounding).
 struct overload {
     double normal, shear;
 };

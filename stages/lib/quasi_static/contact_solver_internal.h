@@ -9,7 +9,9 @@
 
 #include <stddef.h>
 
-// A pair, and the rows of its components, from the first on.
+// A pair, and the rows of its components, from the first on. A pair whose law is no
+// longer that of its tangent in K: it has opened, closed or slipped since. A component
+// that K has right has no row.
 struct active_pair {
     int32_t pair;
     int count, row[COMPONENTS];
@@ -30,6 +32,7 @@ struct row_group {
 
 // It owns all but STIFFNESS, PAIR, TANGENT and FROM. Arrays without a shape are of
 // `count` rows, with room for CAPACITY. W and the matrix have rows CAPACITY apart.
+// Units of the engine.
 struct contact_solver {
     struct stiffness *stiffness;
     int n_pair;
@@ -76,6 +79,7 @@ double update_contacts(struct contact_solver *c, bool is_augmented);
 void add_compliance(const struct contact_solver *c, int row, double more, double *sum);
 
 // Newton's method from the present deformation on. False: no residual below ENOUGH.
+// ENOUGH is for the largest component of the residual.
 bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough);
 
 // Sweeps over the pairs, each of which is solved exactly while the others keep their

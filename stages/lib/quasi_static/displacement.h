@@ -2,7 +2,9 @@
 // Displacement of a grain; of the same shape, force and moment on it. In the units of
 // the engine: lengths in mean radii, stiffnesses in the largest of a pair, so forces in
 // their product and moments in that times a mean radius. Translation and rotation then
-// are of like size, and one number, displacement_size, judges both.
+// are of like size, and one number, displacement_size, judges both. One struct for
+// displacements and for loads, because every operator here is symmetric in both: B maps
+// the one, B^T the other.
 #ifndef CRAQUELURE_DISPLACEMENT_H
 #define CRAQUELURE_DISPLACEMENT_H
 
@@ -10,6 +12,7 @@
 
 #include <math.h>
 
+// As a load: force in stiffness times mean radius, moment in that times a mean radius.
 struct displacement {
     struct vector translation, rotation; // mean radii; rad
 };
@@ -32,7 +35,8 @@ static inline struct displacement displacement_between(const struct displacement
                                  subtract(to->rotation, from->rotation)};
 }
 
-// Subtracts LOAD from SUM.
+// Subtracts LOAD from SUM. The order in which loads are subtracted fixes the rounding:
+// pair after pair.
 static inline void displacement_subtract(struct displacement *sum,
                                          struct displacement load)
 {

@@ -33,7 +33,8 @@ static const double TARGET_FRACTION = 1e-3;
 struct quasi_static;
 struct large_state;
 
-// What depends on whether displacements are small.
+// What depends on whether displacements are small. The two tables differ in these
+// functions only: bonds, fragments, loads and the order of events are common.
 struct kinematics {
     // Deformation and response of the pairs; subtracts their loads from the residual.
     void (*subtract_internal_loads)(struct quasi_static *);
@@ -48,7 +49,9 @@ struct kinematics {
 };
 extern const struct kinematics small_displacements, large_displacements;
 
-// (n): of each grain; (n_pair): of each contact pair.
+// (n): of each grain; (n_pair): of each contact pair. It owns its arrays but those of
+// the packing and the forces from outside. `u` is the iterate, `previous` what a step
+// begins from; whatever is not committed can be rolled back.
 struct quasi_static {
     const struct kinematics *kinematics;
     const struct packing *packing;
@@ -102,6 +105,7 @@ struct quasi_static {
 
 // ---- contact pairs ------------------------------------------------------------------
 
+// From the setup, in the units of the engine.
 struct contact_pair_setup pair_setup_of(const struct quasi_static *qs);
 
 // All arrays (n_pair), the matrix and the contact solver, anew and empty.
@@ -111,7 +115,7 @@ void free_pair_arrays(struct quasi_static *qs);
 // ---- loads --------------------------------------------------------------------------
 
 // The load becomes the force from outside, on grains that are neither fixed nor
-// detached.
+// detached. Where nothing holds the grains their net load is taken off (`taken_off`).
 void apply_external_load(struct quasi_static *qs);
 // The largest of it so far, where the grains are now.
 void update_load_scale(struct quasi_static *qs);
@@ -134,6 +138,7 @@ bool factor_tangent(struct quasi_static *qs);
 bool newton_step(struct quasi_static *qs, bool *is_fresh);
 
 // The iterate becomes the last equilibrium, with the history of its contacts; and back.
+// Committing also moves the anchors of contacts that slipped.
 void commit_state(struct quasi_static *qs);
 void roll_back_state(struct quasi_static *qs);
 
@@ -144,6 +149,7 @@ bool relax_to_equilibrium(struct quasi_static *qs);
 // ---- bonds and fragments ------------------------------------------------------------
 
 // Breaks the most overloaded bond, the first of equals. False: none is at its strength.
+// One at a time, because each break shifts its load to others. The crack is recorded.
 bool break_most_overloaded(struct quasi_static *qs);
 
 // Which grains intact bonds join, and which of these fragments are held.

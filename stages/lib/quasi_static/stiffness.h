@@ -2,7 +2,11 @@
 // The sparse stiffness of all pairs, factored,
 //     K = sum over pairs of (B^T tangent B + geometric) + soft 1 = L L^T,
 // six unknowns for each grain that moves, in the units of displacement.h. No memory of
-// the load is kept but that of the last stiffness_begin.
+// the load is kept but that of the last stiffness_begin. B maps the displacements of
+// two grains to the six components of their deformation (contact_pair.h), `tangent` is
+// diagonal in these. The factor is supernodal (sparse/supernodal.h); its pattern
+// depends on the pairs alone, so it is analysed once and factored as often as states
+// change.
 #ifndef CRAQUELURE_STIFFNESS_H
 #define CRAQUELURE_STIFFNESS_H
 
@@ -14,14 +18,14 @@ struct stiffness;
 
 // For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, which are kept,
 // not copied, and whose grains must stay the same. The caller frees it with
-// stiffness_free.
+// stiffness_free. Fixed grains have no unknowns.
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
                                    const struct contact_pair *pair);
 void stiffness_free(struct stiffness *stiffness);
 
 // Factors K of the TANGENT (n_pair) of each component, >= 0, the GEOMETRIC stiffness
 // (n_pair; NULL: none) and SOFT on the diagonal, for translations and for rotations.
-// False: a pivot that no number holds.
+// False: a pivot that no number holds. SOFT regularises K where nothing holds a grain.
 bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[COMPONENTS],
                       const struct pair_stiffness *geometric, const double soft[2]);
 
@@ -31,14 +35,16 @@ bool stiffness_is_positive(const struct stiffness *stiffness);
 
 // Solves K ANSWER = LOAD (n) by the last factor, forward and then backward. The
 // backward part, which may follow as often as wanted, is of the load less what was
-// subtracted since the last time; the answer (n) is 0 for fixed grains.
+// subtracted since the last time; the answer (n) is 0 for fixed grains. Between the two
+// calls contacts that changed are put right by stiffness_subtract, without a new factor
+// (contact_solver.c).
 void stiffness_begin(struct stiffness *stiffness, const struct displacement *load);
 void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 
 // L^-1 B^T of single components, in up to MOST_SOLVES GROUPS of COUNT (groups) each,
 // BATCH at most. PRODUCT of two such: entries of W = B K^-1 B^T, a row for each of A.
-// The caller frees each (groups) with forward_solves_free.
-// A load of 1 in COMPONENT (enum component) of PAIR.
+// The caller frees each (groups) with forward_solves_free. A load of 1 in COMPONENT
+// (enum component) of PAIR.
 struct unit_load {
     int32_t pair, component;
 };

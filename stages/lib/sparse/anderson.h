@@ -2,7 +2,9 @@
 // A fixed point x = G(x) from the last few steps G(x) - x (Anderson 1965): near it, and
 // where G is linear, as fast as GMRES (Walker and Ni 2011). No derivative is needed.
 // The caller evaluates G, calls anderson_step and adds the step to x; the residual, the
-// limit and the failure are the caller's.
+// limit and the failure are the caller's. With f = G(x) - x the next x is x + f - sum_k
+// c_k dG_k, c by least squares so that sum_k c_k df_k is nearest to f (anderson.c). Any
+// units, if those of all unknowns are alike: the norm adds them up.
 #ifndef CRAQUELURE_ANDERSON_H
 #define CRAQUELURE_ANDERSON_H
 
@@ -17,7 +19,8 @@ struct anderson {
     double *basis[ANDERSON_DEPTH]; // orthonormal basis of residual_change
 };
 
-// Room for up to MOST unknowns. The caller frees it with anderson_free.
+// Room for up to MOST unknowns. The caller frees it with anderson_free. Room: O(MOST
+// ANDERSON_DEPTH).
 struct anderson anderson_init(int most);
 void anderson_free(struct anderson *anderson);
 
@@ -25,6 +28,7 @@ void anderson_free(struct anderson *anderson);
 void anderson_begin(struct anderson *anderson, int n);
 
 // STEP (n) is G(x) - x at the x where the last step led; it becomes the step to take.
+// The first step after anderson_begin is G(x) - x itself.
 void anderson_step(struct anderson *anderson, double *step);
 
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Balances of a network of conductances by CHOLMOD: exact to rounding, for up to some
-// thousand unknowns (README.md).
+// thousand unknowns (README.md). A factor L D L^T of the balances, made once and used
+// for many right sides. Potentials come out in the unit of B over that of the
+// conductances.
 #ifndef CRAQUELURE_CHOLESKY_H
 #define CRAQUELURE_CHOLESKY_H
 
@@ -13,7 +15,7 @@ struct cholesky;
 
 // Factors MATRIX. STATUS_NOT_CONVERGED: it is not positive definite to rounding;
 // STATUS_INTERNAL: out of memory. The caller frees *MADE with cholesky_free, also after
-// a failure.
+// a failure. MATRIX is only read here, and may be freed before the factor.
 enum status cholesky_create(const struct conductance_matrix *matrix,
                             struct cholesky **made, struct reason *reason);
 void cholesky_free(struct cholesky *cholesky);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // CHOLMOD as every stage uses it. Three steps make a matrix: new_entries, add_entry for
-// each, take_matrix.
+// each, take_matrix. CHOLMOD would choose among orderings and between simplicial and
+// supernodal factors by the size of the matrix, and threaded BLAS would add in another
+// order each time. So all is fixed here. What CHOLMOD returns is NULL when out of
+// memory: callers must look.
 #ifndef CRAQUELURE_CHOLMOD_SERIAL_H
 #define CRAQUELURE_CHOLMOD_SERIAL_H
 
@@ -8,7 +11,8 @@
 
 // Begins COMMON, which the caller ends with cholmod_finish: silent, simplicial and
 // always in the same ordering. No BLAS, so the same bytes everywhere and for any number
-// of threads.
+// of threads. AMD is the only ordering tried; `print = 0` keeps messages off the user's
+// screen.
 static inline void cholmod_serial_start(cholmod_common *common)
 {
     cholmod_start(common);
@@ -19,7 +23,8 @@ static inline void cholmod_serial_start(cholmod_common *common)
 }
 
 // The lower triangle of a symmetric matrix of N rows, entry by entry, at most MOST of
-// them. NULL: out of memory, for take_matrix too, which frees the entries.
+// them. NULL: out of memory, for take_matrix too, which frees the entries. -1 stands
+// for a matrix of which the lower triangle is given.
 static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t most)
 {
     return cholmod_allocate_triplet((size_t)n, (size_t)n, most, -1, CHOLMOD_REAL,
@@ -27,7 +32,7 @@ static inline cholmod_triplet *new_entries(cholmod_common *common, int n, size_t
 }
 
 // Adds VALUE at (ROW, COLUMN), or at its mirror below the diagonal; entries at one
-// place are summed by take_matrix. No more than MOST.
+// place are summed by take_matrix. No more than MOST. ENTRIES must not be NULL.
 static inline void add_entry(cholmod_triplet *entries, int row, int column,
                              double value)
 {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solution with a factor of CHOLMOD: simplicial, L D L'.
+// Solution with a factor of CHOLMOD: simplicial, L D L'. FACTOR must be what
+// cholmod_analyze and cholmod_factorize made with cholmod_serial_start: neither
+// supernodal nor L L'. No permutation is applied: whoever calls knows the order
+// (factor->Perm).
 #ifndef CRAQUELURE_CHOLMOD_SOLVE_SERIAL_H
 #define CRAQUELURE_CHOLMOD_SOLVE_SERIAL_H
 
@@ -7,7 +10,7 @@
 
 // X (n), the right side, becomes the solution, both in the factor's own order. WORK (n)
 // is overwritten. About three times as fast as cholmod_solve2 where many columns are
-// alike.
+// alike. No allocation and no failure.
 void cholmod_solve_serial(const cholmod_factor *factor, double *x, double *work);
 
 #endif

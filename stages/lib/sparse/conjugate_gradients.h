@@ -4,7 +4,9 @@
 #define CRAQUELURE_CONJUGATE_GRADIENTS_H
 
 // A problem with a symmetric positive definite matrix A of N rows, and a preconditioner
-// M. MULTIPLY finds A X, PRECONDITION finds Z = M^-1 RESIDUAL.
+// M. MULTIPLY finds A X, PRECONDITION finds Z = M^-1 RESIDUAL. Both must be linear and
+// symmetric, and M positive definite; neither may change from call to call. They may
+// use threads if their sums have a fixed order.
 struct linear_problem {
     int n;
     void *context; // given to both
@@ -16,7 +18,8 @@ struct linear_problem {
 // Solves from X = 0 until the norm of RESIDUAL (n), at first the right side, is
 // TOLERANCE or less, or after MOST iterations, or when the preconditioner proves not
 // positive definite. RESIDUAL is returned as updated in each step. Returns the number
-// of iterations.
+// of iterations. The updated residual drifts from B - A X by rounding: whoever needs
+// the true one computes it anew. No allocation.
 int conjugate_gradients(const struct linear_problem *problem, double *residual,
                         double *x, double tolerance, int most);
 
@@ -25,7 +28,8 @@ int conjugate_gradients(const struct linear_problem *problem, double *residual,
 int resume_conjugate_gradients(const struct linear_problem *problem, double *residual,
                                double *x, double tolerance, int most);
 
-// Sum of x_i y_i in blocks of fixed length: the same for any number of threads.
+// Sum of x_i y_i in blocks of fixed length: the same for any number of threads. Blocks
+// are added in their order, each by one thread.
 double sum_of_products(const double *x, const double *y, int n);
 
 #endif

@@ -19,7 +19,9 @@ enum {
     HEIGHT = SIMD_WIDTH == 8 ? 8 : 4
 }; // of a tile in registers
 
-// The first of the largest; -1: there is none above 0.
+// The first of the largest; -1: there is none above 0. Lane by lane first, so that the
+// loop has no branch; then the place of the largest is looked up. Comparing only, so
+// the choice is the same on all processors.
 static int find_pivot(int n, const double *column)
 {
     double largest[SIDE] = {0}, most = 0;
@@ -38,6 +40,7 @@ static int find_pivot(int n, const double *column)
     return -1;
 }
 
+// In the panel numbers move; in the matrix only ROW does.
 static void exchange_rows(double *panel, int height, int width, int *row, int k, int l)
 {
     const int other = row[k];
@@ -62,7 +65,8 @@ SIMD_INLINE void subtract_column(int n, double share, const double *restrict fro
         to[k] = fma(-share, from[k], to[k]);
 }
 
-// WIDTH columns of PANEL, HEIGHT numbers each.
+// WIDTH columns of PANEL, HEIGHT numbers each. Right-looking: after column k all later
+// columns of the panel are up to date.
 static bool factor_panel(double *panel, int height, int width, int *row)
 {
     for (int k = 0; k < width; k++) {
@@ -82,7 +86,8 @@ static bool factor_panel(double *panel, int height, int width, int *row)
 }
 
 // What the first WIDTH of ROW are in COLUMNS columns from LAST on, below the panel's
-// triangle in columns FIRST on; and its opposite in TILE.
+// triangle in columns FIRST on; and its opposite in TILE. In rising order of the
+// pivots, each with those before it in TILE. The opposite, because add_tile_rows adds.
 static void finish_pivots(double *matrix, int stride, const int *row, int width,
                           int first, int last, int columns, double tile[][SIDE])
 {
@@ -104,7 +109,8 @@ static void finish_pivots(double *matrix, int stride, const int *row, int width,
     }
 }
 
-// ROWS rows of numbers TO grow by WIDTH of SHARE times the rows of TILE.
+// ROWS rows of numbers TO grow by WIDTH of SHARE times the rows of TILE. HEIGHT by SIDE
+// sums stay in registers over all WIDTH products.
 SIMD_INLINE void add_tile_rows(int rows, int width, double *const share[],
                                double *const to[], double tile[][SIDE])
 {
@@ -122,7 +128,9 @@ SIMD_INLINE void add_tile_rows(int rows, int width, double *const share[],
             store_unaligned(to[r] + SIMD_WIDTH * q, sum[r][q]);
 }
 
-// The same of COUNT rows of the matrix, in COLUMNS columns from LAST on.
+// The same of COUNT rows of the matrix, in COLUMNS columns from LAST on. A tile that
+// the matrix does not fill is worked on in EDGE and copied back; rows beyond the last
+// repeat the first of the tile and are dropped.
 static void subtract_rows(double *matrix, int stride, const int *row, int count,
                           int width, int first, int last, int columns,
                           double tile[][SIDE])
@@ -144,6 +152,7 @@ static void subtract_rows(double *matrix, int stride, const int *row, int count,
     }
 }
 
+// Panel by panel, then SIDE columns at a time right of it.
 static bool factor_dense(int n, double *matrix, int stride, int *row, double *work)
 {
     for (int k = 0; k < n; k++)

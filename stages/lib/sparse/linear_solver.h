@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Corrections of potentials until the balances of a network close: with a Cholesky
-// factor, or by conjugate gradients preconditioned with an approximate one.
+// factor, or by conjugate gradients preconditioned with an approximate one. X is kept
+// as compensated sums and corrected again and again (iterative refinement): each
+// correction is solved to a few digits, while the residual is computed with all of
+// them. So flows keep their digits where potentials are nearly equal.
 #ifndef CRAQUELURE_LINEAR_SOLVER_H
 #define CRAQUELURE_LINEAR_SOLVER_H
 
@@ -9,11 +12,13 @@
 #include "elimination/conductance_matrix.h"
 
 // AUTO takes the Cholesky factor up to 1500 unknowns, where it is faster, and iteration
-// beyond.
+// beyond. It names the method; results agree to the caller's tolerance, not to the last
+// digit.
 enum solver { SOLVER_AUTO, SOLVER_CHOLESKY, SOLVER_ITERATION };
 
 // Made once for a matrix, then asked for corrections as often as its caller's tolerance
-// wants: the residual, the limit and the failure are the caller's.
+// wants: the residual, the limit and the failure are the caller's. It owns all but the
+// matrix.
 struct linear_solver {
     const struct conductance_matrix *matrix;
     struct cholesky *cholesky; // one of the two, the other NULL

@@ -9,7 +9,9 @@
 #include <stddef.h>
 
 // Columns FIRST to FIRST + COLUMNS - 1 share ROWS rows: their own, then those below.
-// Entry (row[i], first + j) of the factor is panel[j rows + i].
+// Entry (row[i], first + j) of the factor is panel[j rows + i]. ROW is not owned: it
+// points into struct supernodal. PARENT is the supernode of the first row below the own
+// ones (elimination tree).
 struct supernode {
     int first, columns, rows;
     const int *row;
@@ -17,6 +19,8 @@ struct supernode {
     int parent;    // or -1
 };
 
+// It owns all arrays. TARGET says where each entry of the caller's matrix goes, so that
+// a new factor of the same pattern starts with one pass over the values.
 struct supernodal {
     int n, n_super;
     struct supernode *super;

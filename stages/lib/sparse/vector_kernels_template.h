@@ -24,7 +24,7 @@
 
 enum { PARTS = BATCH / SIMD_WIDTH };
 
-// C - A B.
+// C - A B. Rounded once; A is the same for all lanes.
 SIMD_INLINE doublew subtract_product(doublew c, double a, doublew b)
 {
     return fnmadd(splat(a), b, c);
@@ -36,7 +36,8 @@ SIMD_INLINE doublew subtract_product(doublew c, double a, doublew b)
 
 // A / B with the INVERSE of B at hand: one Newton step,
 //     x = A inverse,  x + (A - x B) inverse,
-// makes it as exact as a division, and it is much sooner done.
+// makes it as exact as a division, and it is much sooner done. The same on all
+// processors: each operation is rounded as IEEE 754 says.
 SIMD_INLINE doublew divided(doublew a, double b, double inverse)
 {
     const doublew nearly = a * splat(inverse);
@@ -54,7 +55,9 @@ SIMD_INLINE double *lanes_of(const struct supernode *super, int i, int parts, do
 // Columns of a grain lie together: six at a time, then the rest.
 enum { MOST = 6 };
 
-// WIDE columns from FIRST on.
+// WIDE columns from FIRST on. First the triangle of these columns, whose X stay in
+// registers (`own`), then all rows below lose WIDE products each, in the order of the
+// columns.
 SIMD_INLINE void forward_columns(const struct supernode *super, int first, int wide,
                                  int parts, double *x)
 {
@@ -88,7 +91,8 @@ SIMD_INLINE void forward_columns(const struct supernode *super, int first, int w
     }
 }
 
-// SUPER's part of the forward solve for PARTS vectors of lanes.
+// SUPER's part of the forward solve for PARTS vectors of lanes. Six columns are the six
+// unknowns of a grain: most supernodes have a multiple of that.
 SIMD_INLINE void forward(const struct supernode *super, int parts, double *x)
 {
     const int columns = super->columns;
@@ -114,7 +118,9 @@ static void forward_eight(const struct supernode *super, double *x)
 
 // ---- the factor ---------------------------------------------------------------------
 
-// SIMD_WIDTH rows from AT on of WIDE columns, whose own triangle begins at row OWN.
+// SIMD_WIDTH rows from AT on of WIDE columns, whose own triangle begins at row OWN. As
+// forward_columns, with rows of the panel in place of right sides: row i of the factor
+// solves a triangular system, too.
 SIMD_INLINE void finish_rows(double *panel, int rows, int own, int wide, int at)
 {
     doublew x[8];
@@ -129,7 +135,7 @@ SIMD_INLINE void finish_rows(double *panel, int rows, int own, int wide, int at)
     }
 }
 
-// As finish_rows, one.
+// As finish_rows, one. The same operations in the same order as a lane of finish_rows.
 SIMD_INLINE void finish_row(double *panel, int rows, int own, int wide, int at)
 {
     for (int j = 0; j < wide; j++) {
@@ -142,6 +148,7 @@ SIMD_INLINE void finish_row(double *panel, int rows, int own, int wide, int at)
     }
 }
 
+// WIDE is a constant where finish_rows is inlined, for the two widths that matter.
 static void finish_columns(const struct supernode *super, int first, int end)
 {
     const int rows = super->rows, wide = end - first;
@@ -160,7 +167,8 @@ static void finish_columns(const struct supernode *super, int first, int end)
 // ---- products -----------------------------------------------------------------------
 
 // SUM (TILE by the lanes of B) grows by the products of N rows of lanes of A, from the
-// first on, with those of B.
+// first on, with those of B. TILE columns of A by all lanes of B, in registers over all
+// N rows.
 SIMD_INLINE void add_tile(int n, const double *a, int a_lanes, const double *b,
                           int tile, int parts, double *sum)
 {
@@ -199,7 +207,8 @@ static void add_product_of_eight(int n, const double *a, int a_lanes, const doub
 // A tile of TALL vectors of rows and WIDE columns stays in registers.
 enum { TILE_COLUMNS = SIMD_WIDTH, TALL = 3 };
 
-// The first COUNT numbers of a vector; when packed, zeros follow.
+// The first COUNT numbers of a vector; when packed, zeros follow. What lies behind
+// these numbers in memory stays.
 SIMD_INLINE void store_first(double *to, doublew from, int count)
 {
 #if defined SIMD_AVX512
@@ -222,7 +231,8 @@ SIMD_INLINE void pack_first(double *to, const double *from, int count)
 }
 
 // C gets TALL vectors of rows (ROWS of them count) by TILE_COLUMNS (COLUMNS count):
-// sums over K, one fused operation each, in rising order.
+// sums over K, one fused operation each, in rising order. A is read beyond its last
+// row, up to a whole vector: callers leave room for that (dense_kernels.h).
 SIMD_INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
                                const double *packed, double *c, int c_stride, int rows,
                                int columns)
@@ -249,6 +259,7 @@ SIMD_INLINE void multiply_tile(int tall, int k, const double *a, int a_stride,
     }
 }
 
+// The fewest vectors that hold the ROWS.
 static void multiply_tall(int k, const double *a, int a_stride, const double *packed,
                           double *c, int c_stride, int rows, int columns)
 {
@@ -260,7 +271,8 @@ static void multiply_tall(int k, const double *a, int a_stride, const double *pa
         multiply_tile(1, k, a, a_stride, packed, c, c_stride, rows, columns);
 }
 
-// TILE_COLUMNS columns at a time, each (k * TILE_COLUMNS).
+// TILE_COLUMNS columns at a time, each (k * TILE_COLUMNS). So the innermost loop reads
+// B number after number, whatever its stride.
 static void pack(int n, int k, const double *b, int b_stride, double *packed)
 {
     for (int j = 0; j < n; j += TILE_COLUMNS)
@@ -274,6 +286,7 @@ static void pack(int n, int k, const double *b, int b_stride, double *packed)
 }
 
 // Takes as many columns of B as fit into WORK, then tiles of A once for all of these.
+// Where LOWER, tiles wholly above the diagonal are left out.
 static void multiply(int m, int n, int k, const double *a, int a_stride,
                      const double *b, int b_stride, double *c, int c_stride, bool lower,
                      double *work)

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What rounding must not decide: CGAL's exact arithmetic behind a C interface.
+// What rounding must not decide: CGAL's exact arithmetic behind a C interface. Signs
+// are those of exact numbers, whatever the coordinates: doubles are taken as they are.
+// CGAL's predicates try intervals first and rational numbers only where these do not
+// decide.
 #ifndef CRAQUELURE_EXACT_H
 #define CRAQUELURE_EXACT_H
 
@@ -12,12 +15,13 @@
 extern "C" {
 #endif
 
+// m, m2; or any unit and its square.
 struct weighted_point {
     struct vector at;
     double weight; // radius squared
 };
 
-// Walls of a box that all points are in.
+// Walls of a box that all points are in. In the unit of the points.
 struct wall_box {
     struct vector lower, upper;
 };

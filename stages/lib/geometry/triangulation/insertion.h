@@ -9,7 +9,7 @@
 #include <float.h>
 
 // A facet between a cell that goes and one that stays. Its vertices come so that with
-// the new point they are positively oriented.
+// the new point they are positively oriented. The new point and this facet make a cell.
 struct facet {
     int32_t vertex[3];
     int32_t beyond; // the cell that stays
@@ -17,13 +17,15 @@ struct facet {
 };
 
 // An entry of a hash table of the directed edges of the rim; those of other points than
-// the one being inserted count as empty.
+// the one being inserted count as empty. An edge of the rim is shared by two new cells:
+// the second finds the first here.
 struct edge {
     int32_t from, to;
     int32_t inserted;
     int32_t cell;
 };
 
+// It owns CELL, CAVITY, RIM, UNUSED and EDGE; they only grow.
 struct insertion {
     const struct weighted_point *point;
     const struct wall_box *box; // NULL: no walls
@@ -41,7 +43,8 @@ struct insertion {
     int64_t n_test, n_exact;
 };
 
-// The sense of turn (-1, 0, 1) of four points. Exact.
+// The sense of turn (-1, 0, 1) of four points. Exact. 1: positively oriented, 0: in one
+// plane.
 int orientation(const struct weighted_point *const p[4]);
 
 // That of the corners of a cell with point E in place of corner
@@ -49,12 +52,16 @@ int orientation(const struct weighted_point *const p[4]);
 int orientation_with(const struct insertion *insertion, const int32_t vertex[4], int k,
                      int32_t e);
 
-// As takes() where rounding could decide, and for infinite cells.
+// As takes() where rounding could decide, and for infinite cells. Ties are broken as
+// regular_triangulation.h says.
 bool takes_exactly(struct insertion *insertion, const struct live_cell *cell,
                    int32_t e);
 
 // Whether point E takes a cell away: whether it has less power to the cell's centre
-// than the vertices have.
+// than the vertices have. With q = E - last vertex and c the centre from there, the
+// power of E less that of the vertices is |q|^2 + w_last - w_E - 2 q.c. BOUND is what
+// rounding of c (cell->error) and of these sums can do; nearly all points are told
+// apart by it.
 static inline bool takes(struct insertion *insertion, const struct live_cell *cell,
                          int32_t e)
 {

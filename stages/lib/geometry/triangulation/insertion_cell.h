@@ -24,6 +24,7 @@ static inline struct corner_between wall_corner(const struct wall_box *box,
         .plane = component(wall % 2 ? box->upper : box->lower, axis)};
 }
 
+// Neighbour k is opposite vertex k.
 struct live_cell {
     int32_t vertex[4], neighbour[4];
     struct vector at; // centre of power, from the last vertex
@@ -35,7 +36,8 @@ static_assert(sizeof(struct live_cell) == 64, "one cache line");
 
 // Finds the centres of COUNT cells, WHICH among CELLS, and how far off they may be by
 // rounding. They have their vertices, of which one may be infinite or, in a BOX, the
-// first three walls. BOX is NULL where there are none.
+// first three walls. BOX is NULL where there are none. Together, because four are found
+// side by side in a vector.
 void find_centres(const struct weighted_point *point, const struct wall_box *box,
                   struct live_cell *cells, const int32_t *which, int count);
 

@@ -27,7 +27,8 @@ static inline int index_among(const int32_t four[4], int32_t x)
 }
 
 // The infinite cells are left out. What is found out about cells later is NULL until
-// then; whoever finds it out allocates it.
+// then; whoever finds it out allocates it. It owns its arrays; triangulation_free frees
+// them.
 struct triangulation {
     int n_cell;
     struct cell *cell;
@@ -38,7 +39,8 @@ struct triangulation {
     uint8_t *seen;       // (n_cell) edges done with; SHARES_NODE
 };
 
-// The repetition of the box that the node of a cell is seen in.
+// The repetition of the box that the node of a cell is seen in. {0} where it does not
+// repeat.
 static inline struct image node_image(const struct triangulation *triangulation, int c)
 {
     return triangulation->image ? triangulation->image[c] : (struct image){0};
