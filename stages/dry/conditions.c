@@ -13,6 +13,7 @@
 
 #include <stddef.h>
 
+// The comparison is written so that NAN is refused, too.
 static enum status check_positive(const struct drying_conditions *conditions,
                                   struct reason *reason)
 {
@@ -33,6 +34,8 @@ static enum status check_positive(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// At 90 degrees the suction 2 gamma cos(theta) / r is 0, and the order of invasion
+// would be none.
 static enum status check_menisci(const struct drying_conditions *conditions,
                                  struct reason *reason)
 {
@@ -51,6 +54,9 @@ static enum status check_menisci(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// Surface tension and angle count only where suctions are computed: in viscous liquid,
+// under gravity, or with the Kelvin effect. In the two limits only the order of the
+// radii counts, which has no tension in it.
 static enum status check_liquid(const struct drying_conditions *conditions,
                                 struct reason *reason)
 {
@@ -73,6 +79,8 @@ static enum status check_liquid(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// p_inf < p_sat < p_g: otherwise the logarithm of [K 3.9] has no sign that dries, or no
+// value.
 static enum status check_air(const struct drying_conditions *conditions,
                              struct reason *reason)
 {
@@ -104,7 +112,9 @@ static enum status check_air(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-// Where the run starts and ends, and what is recorded of it.
+// Where the run starts and ends, and what is recorded of it. A tolerance is for rates
+// that come straight from the elimination of the vapour's network: liquid without
+// viscosity or immobile, menisci that are not curved.
 static enum status check_course(const struct drying_conditions *conditions,
                                 struct reason *reason)
 {
@@ -140,6 +150,7 @@ static enum status check_course(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// Air before liquid, because the more usual mistakes are there.
 enum status check_conditions(const struct drying_conditions *conditions,
                              struct reason *reason)
 {
@@ -150,6 +161,8 @@ enum status check_conditions(const struct drying_conditions *conditions,
     return status;
 }
 
+// Only throats that may hold liquid; those closed by grains or imposed empty need no
+// size.
 enum status check_throats(const struct network *network, struct reason *reason)
 {
     int n = 0;
@@ -190,6 +203,7 @@ int count_throats(const struct network *network)
     return n;
 }
 
+// 12 bytes a change: a throat of 4, a saturation of 8.
 enum status check_steps(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason)
 {
@@ -202,6 +216,7 @@ enum status check_steps(const struct drying_conditions *conditions,
                   MAX_RECORDED_THROATS, n, bytes / 1e9);
 }
 
+// Compensated, because the unit of length enters every number.
 static double mean_throat_length(const struct network *network)
 {
     struct compensated sum = {0};
@@ -215,13 +230,16 @@ static double mean_throat_length(const struct network *network)
 }
 
 // ln((p_g - p_inf) / (p_g - p_sat)): the rise of -ln(1 - p_v/p_g) from the drying air
-// to the wet nodes.
+// to the wet nodes. log1p(x) with x = (p_sat - p_inf) / (p_g - p_sat), since 1 + x =
+// (p_g - p_inf) / (p_g - p_sat).
 static double potential_drop(const struct drying_conditions *conditions)
 {
     return log1p((conditions->saturation_pressure - conditions->air_vapour_pressure) /
                  (conditions->gas_pressure - conditions->saturation_pressure));
 }
 
+// beta enters as the thickness delta / beta of the boundary layer [K 3.3.5], in throat
+// lengths.
 struct drying_scale drying_scale(const struct network *network,
                                  const struct drying_conditions *conditions)
 {
@@ -238,6 +256,7 @@ struct drying_scale drying_scale(const struct network *network,
     return scale;
 }
 
+// Within these bounds the square of a time is still a normal number.
 enum status check_scale(const struct drying_conditions *conditions,
                         const struct network *network, struct reason *reason)
 {
@@ -250,6 +269,7 @@ enum status check_scale(const struct drying_conditions *conditions,
         conditions->saturation_pressure, conditions->diffusivity, time);
 }
 
+// From D_K(r) = delta: r = 3/2 delta / speed, with the mean speed of the molecules.
 double knudsen_radius(const struct drying_conditions *conditions)
 {
     if (!conditions->knudsen) return 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines of the artifact's `model`: what was modelled, with the numbers that matter,
-// and what was left out.
+// Lines of the artifact's `model`: what was modelled, with the numbers that matter, and
+// what was left out. They follow the switches and nothing else, so the text cannot
+// claim what was not computed. 17 digits give a double back exactly.
 #include "describe.h"
 
 #include "conditions.h"
@@ -8,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+// One line, which the caller begins with "liquid: ".
 const char *describe_liquid(const struct drying_conditions *conditions,
                             const struct drying_history *history, char *text,
                             size_t size)
@@ -32,12 +34,15 @@ const char *describe_liquid(const struct drying_conditions *conditions,
     return text;
 }
 
+// Cut at SIZE rather than past it.
 static void append(char *text, size_t size, const char *more)
 {
     const size_t length = strlen(text);
     snprintf(text + length, size - length, "%s", more);
 }
 
+// "left out" ends with what no switch turns on: films along corners, and the
+// temperature field.
 const char *describe_switches(const struct drying_conditions *conditions, char *text,
                               size_t size)
 {

@@ -34,6 +34,7 @@ static const struct stage stage = {
     .parameters = dry_table,
     .checkpoints = true};
 
+// Saturation falls during the drying, so a rising list could not be met in its order.
 static void check_snapshots(const struct dry_parameters *parameters)
 {
     const struct number_list *snapshots = &parameters->snapshots;
@@ -60,6 +61,7 @@ static struct artifact *open_input(const char *path)
     return input;
 }
 
+// An artifact of a finished drying has none left.
 static bool holds_liquid(const struct network *network, const double *saturation)
 {
     for (int t = 0; t < network->n_throat; t++)
@@ -68,6 +70,8 @@ static bool holds_liquid(const struct network *network, const double *saturation
 }
 
 // Throat by throat, from a drying or a network that says how full they are; else NULL.
+// The caller frees it. A drying has no saturations of its own at any moment but its
+// changes: they are replayed down to SATURATION.
 static double *read_start(const struct artifact *input, const struct network *network,
                           double saturation)
 {
@@ -110,6 +114,7 @@ static void dry(const struct network *network, const struct dry_parameters *para
     if (status) die(status, "%s: %s", input_name(path), reason.text);
 }
 
+// The two axes along WALL: those other than wall / 2.
 static double longer_open_edge(const struct packing *packing, int wall)
 {
     const struct vector edge = subtract(packing->upper, packing->lower);
@@ -117,7 +122,8 @@ static double longer_open_edge(const struct packing *packing, int wall)
                 component(edge, (wall + 4) / 2 % 3));
 }
 
-// Says that a given thickness of the boundary layer is not used.
+// Says that a given thickness of the boundary layer is not used. A user who gives it
+// and reads another number in the results would not know why.
 static void note_unused_thickness(const struct dry_parameters *parameters,
                                   double thickness)
 {
@@ -129,6 +135,8 @@ static void note_unused_thickness(const struct dry_parameters *parameters,
            given, thickness);
 }
 
+// The length of the body along the flow, unless given, is the longer edge of the first
+// open wall. Re and Sc need the diffusivity, hence after complete_conditions.
 static struct mass_transfer give_mass_transfer(const struct network *network,
                                                struct dry_parameters *parameters,
                                                bool quiet)
@@ -154,7 +162,8 @@ static struct mass_transfer give_mass_transfer(const struct network *network,
 }
 
 // Empties the throats from which no path through liquid leads to a column of the
-// boundary layer; returns their number.
+// boundary layer; returns their number. Their liquid could never dry, so the run would
+// not end.
 static int empty_enclosed(struct network *network, unsigned open_walls,
                           enum boundary_feet feet)
 {
@@ -173,7 +182,8 @@ static int empty_enclosed(struct network *network, unsigned open_walls,
 }
 
 // What was given for another liquid or temperature, as it seems, and what INPUT, which
-// another drying has left, knows better.
+// another drying has left, knows better. All properties, whether the run needs them or
+// not, since all go into the artifact.
 static void note_fluids(const struct dry_parameters *parameters,
                         const struct artifact *input)
 {

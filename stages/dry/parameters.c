@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The parameters of dry as one table. Defaults that are numbers stand in it; null means
+// that the default depends on the network, the liquid or another parameter, and
+// complete_conditions finds it. Rows of liquids, gas and drawn radii are shared with
+// other stages (parameters/conditions.h, network/drawn_radii.h).
 #include "parameters.h"
 
 #include "basics/memory.h"

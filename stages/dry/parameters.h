@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of dry.
+// The parameters of dry. The table reads into `given` (what several stages share) and
+// into `conditions`; what depends on the network, or on another parameter, is filled in
+// afterwards by complete_conditions. NAN: not given.
 #ifndef CRAQUELURE_DRY_PARAMETERS_H
 #define CRAQUELURE_DRY_PARAMETERS_H
 
@@ -9,8 +11,11 @@
 #include "parameters/conditions.h"
 #include "parameters/parameters.h"
 
+// The choices of boundary_layer.exchange, in their order.
 enum { EXCHANGE_LATTICE, EXCHANGE_LUMPED };
 
+// Members that are int hold the place of a choice in the table. SHUT and ENCLOSED are
+// counted by main.
 struct dry_parameters {
     struct conditions given; // liquid and air, as the user gave them
     struct drying_conditions conditions;
@@ -30,7 +35,8 @@ extern const struct parameter dry_table[];
 
 // Completes .conditions from the parameters that were not read directly into them and
 // from NETWORK, which decides defaults. The caller frees .even_snapshots.
-// STATUS_BAD_DATA as conditions_complete.
+// STATUS_BAD_DATA as conditions_complete. .conditions points into .snapshots and
+// .even_snapshots: the struct must not be moved.
 enum status complete_conditions(struct dry_parameters *parameters,
                                 const struct network *network, struct reason *reason);
 

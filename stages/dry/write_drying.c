@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The drying artifact: history, events and changes as they were recorded, profiles and
 // snapshots made from them, a summary with the balances. Only here do results get
-// names.
+// names. Datasets are those of schemas/drying.json.
 #include "write_drying.h"
 
 #include "artifacts/liquid.h"
@@ -16,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+// The time of the first step at or below that saturation.
 static double first_period_end_time(const struct drying_history *history)
 {
     for (int k = 0; k < history->n_step; k++)
@@ -24,6 +25,7 @@ static double first_period_end_time(const struct drying_history *history)
     return history->time[history->n_step - 1];
 }
 
+// Over the first, so that runs of different sizes can be compared.
 static void put_normalised_rate(struct artifact *artifact,
                                 const struct drying_history *history)
 {
@@ -54,6 +56,7 @@ static void put_moments(struct artifact *artifact, const char *group,
     free(saturation);
 }
 
+// At nine levels, whatever was asked for as snapshots.
 static void put_profiles(struct artifact *artifact, const struct network *network,
                          const struct drying_history *history,
                          const struct drying_conditions *conditions)
@@ -89,6 +92,7 @@ static void put_snapshots(struct artifact *artifact, const struct network *netwo
     profiles_free(&profiles);
 }
 
+// Rows of a dataset are counted in int.
 static void put_history(struct artifact *artifact, const struct drying_history *history)
 {
     const int n_step = history->n_step, n_event = history->n_event;
@@ -110,7 +114,8 @@ static void put_history(struct artifact *artifact, const struct drying_history *
     artifact_put(artifact, "/changes/saturation", history->change_saturation, n_change);
 }
 
-// What evaporated against what the throats have lost, of the liquid at the start.
+// What evaporated against what the throats have lost, of the liquid at the start. Two
+// independent numbers: the one is summed from rates and times, the other from volumes.
 static double balance_error(const struct drying_history *history)
 {
     const double left =
@@ -135,6 +140,7 @@ static void put_summary(struct artifact *artifact, const struct drying_history *
     artifact_put_number(artifact, "/summary/liquid_residual", history->liquid_residual);
 }
 
+// For the stages behind, which take surface tension and angle from here.
 static void put_fluids(struct artifact *artifact,
                        const struct dry_parameters *parameters)
 {

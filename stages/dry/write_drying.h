@@ -8,7 +8,8 @@
 
 // Writes HISTORY of the whole run on NETWORK under PARAMETERS to the output of
 // INVOCATION. TRANSFER made the boundary layer; INPUT is the network artifact. SI
-// units. Ends the program on failure.
+// units. Ends the program on failure. The history is not changed, and must have its
+// first and last step.
 void write_drying(const struct network *network, const struct drying_history *history,
                   const struct invocation *invocation, const struct artifact *input,
                   const struct dry_parameters *parameters,

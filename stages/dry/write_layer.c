@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary layer is made again, in metres, since the run keeps only its scaled
-// one.
+// The boundary layer is made again, in metres, since the run keeps only its scaled one.
+// Same network, same walls, same thickness and number of layers: boundary_layers_init
+// then gives the same columns, with a unit of length of 1 m.
 #include "write_layer.h"
 
 #include "basics/status.h"
 
 #include <stdio.h>
 
+// It cannot fail where the run did not.
 void put_boundary_layer(struct artifact *artifact, const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_history *history)
@@ -51,6 +53,7 @@ const char *describe_layer(const struct drying_conditions *conditions,
     return text;
 }
 
+// In the order of enum transfer_law. Numbers only where the law used them.
 const char *describe_flow(enum transfer_law law, const struct mass_transfer *transfer,
                           char text[200])
 {

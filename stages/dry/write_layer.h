@@ -8,13 +8,14 @@
 #include "dry/run/drying.h"
 
 // Writes its columns, their exchange areas and links to ARTIFACT, in metres, as
-// dry_network had them. Ends the program on failure.
+// dry_network had them. Ends the program on failure. NETWORK and CONDITIONS must be
+// those of the run.
 void put_boundary_layer(struct artifact *artifact, const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_history *history);
 
 // Lines of `model`, written to TEXT, which they return: how the layer is modelled, and
-// where its thickness comes from.
+// where its thickness comes from. Without a line's end.
 const char *describe_layer(const struct drying_conditions *conditions,
                            const struct drying_history *history, char text[300]);
 const char *describe_flow(enum transfer_law law, const struct mass_transfer *transfer,

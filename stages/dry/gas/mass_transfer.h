@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How thick the boundary layer is: epsilon = delta/beta [K 3.3.5], from what the user
-// knows of the air flow.
+// knows of the air flow. The layer stands for the gradient of vapour beside the body:
+// through a thickness epsilon the flux is delta / epsilon times the difference of
+// densities, as beta times it is.
 #ifndef CRAQUELURE_MASS_TRANSFER_H
 #define CRAQUELURE_MASS_TRANSFER_H
 
@@ -16,6 +18,7 @@ enum transfer_law {
                           // Marshall (1952), to Re = 200; 2 in air at rest
 };
 
+// Which of them count depends on the law.
 struct air_flow {
     double coefficient;         // beta, m/s
     double thickness;           // epsilon, m

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A part of a rectangle, bounded by straight sides: how much of a polygon or a line
-// lies in it.
+// lies in it. The open side of a body as seen from above, for the exchange areas of the
+// boundary layer. In m, or scaled; all in one unit.
 #ifndef CRAQUELURE_PLANAR_REGION_H
 #define CRAQUELURE_PLANAR_REGION_H
 
@@ -10,14 +11,16 @@ struct planar {
     double x, y;
 };
 
-// From 0 to SIZE; repeated along an axis where it is periodic, else ended there.
+// From 0 to SIZE; repeated along an axis where it is periodic, else ended there. A
+// point and its repetitions are one point of the region.
 struct rectangle {
     struct planar size;
     bool periodic_x, periodic_y;
 };
 
 // The region lies to the left of its sides. These form closed loops: where the
-// rectangle repeats, around what is missing of it; else around what is there.
+// rectangle repeats, around what is missing of it; else around what is there. It owns
+// SIDE: from [0] to [1].
 struct planar_region {
     int n_side; // 0: all of the rectangle
     struct planar (*side)[2];
@@ -38,6 +41,7 @@ double length_in_region(const struct planar_region *region, struct planar origin
 bool region_holds(const struct planar_region *region, struct planar origin,
                   double distance);
 
+// What it owns; the region is empty then.
 void planar_region_free(struct planar_region *region);
 
 #endif

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a throat that empties changes in the matrix of the bodies of liquid: bodies at
-// its ends, or that split, are replaced by others; nodes that dry are eliminated.
+// its ends, or that split, are replaced by others; nodes that dry are eliminated. So
+// the matrix need not be made anew at each event: the caller replaces the rows listed
+// here and keeps the rest.
 #ifndef CRAQUELURE_DRIED_NODES_H
 #define CRAQUELURE_DRIED_NODES_H
 
@@ -16,6 +18,7 @@ struct dried_node {
     double total;   // conductance of all its links
 };
 
+// It owns its arrays.
 struct dried_nodes {
     bool by_throat; // a throat is a body of liquid; else a cluster
     int n_throat;   // that have emptied
@@ -35,6 +38,7 @@ struct dried_nodes {
 struct dried_nodes dried_nodes_init(int n_throat, int n_site, bool by_throat);
 
 // Call _note_before when THROAT is about to be emptied, _note_after when it has been.
+// Both must be called for each throat, in the order in which throats empty.
 void dried_nodes_note_before(struct dried_nodes *dried, struct occupancy *occupancy,
                              int throat);
 void dried_nodes_note_after(struct dried_nodes *dried,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The bodies of liquid beside gas, and the share of each in the wet nodes.
+// The bodies of liquid beside gas, and the share of each in the wet nodes. A body is a
+// cluster, or in immobile liquid a throat: what has one pressure, and so one vapour
+// pressure at its menisci.
 #ifndef CRAQUELURE_KELVIN_BODIES_H
 #define CRAQUELURE_KELVIN_BODIES_H
 
@@ -9,6 +11,7 @@
 void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
 
 // What gravity adds to the potential at each wet node, for the exponents of the bodies.
+// Scaled, as the vapour's potential is.
 void kelvin_find_gravity_potentials(struct kelvin_menisci *kelvin,
                                     const struct occupancy *occupancy);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What bodies of liquid evaporate at given potentials, and the rounding of it.
+// Evaporation is a sum of conductances times differences of potential, in which large
+// terms of both signs may cancel: so its rounding is found along with it.
 #ifndef CRAQUELURE_KELVIN_EVAPORATION_H
 #define CRAQUELURE_KELVIN_EVAPORATION_H
 
 #include "kelvin_menisci.h"
 
 // Sets kelvin->evaporation of each body and kelvin->rate into the air, both scaled,
-// from kelvin->potential.
+// from kelvin->potential. Below 0 where vapour condenses.
 void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
                              const struct occupancy *occupancy);
 

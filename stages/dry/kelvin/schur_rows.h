@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How what a body of liquid evaporates decreases with the potentials of all bodies: the
 // rows of a symmetric, positive semidefinite matrix. It is sparse, for most links are
-// throats.
+// throats. It is the Schur complement of the dry nodes in the vapour's balances, summed
+// over the wet nodes of each body.
 #ifndef CRAQUELURE_SCHUR_ROWS_H
 #define CRAQUELURE_SCHUR_ROWS_H
 
@@ -12,6 +13,7 @@ struct at_node {
     double part;
 };
 
+// It owns its arrays. Bodies are numbered as kelvin_list_bodies lists them.
 struct schur_rows {
     int *offset;        // (bodies+1) of each body's wet nodes
     struct at_node *at; // (offset[bodies])
@@ -35,6 +37,7 @@ void schur_rows_list(struct schur_rows *rows, const struct kelvin_menisci *kelvi
                      const struct occupancy *occupancy);
 
 // Makes the row of BODY in N, COLUMN and VALUE; _clear must follow before the next.
+// O(links of the wet nodes of BODY).
 void schur_rows_take(struct schur_rows *rows, const struct kelvin_menisci *kelvin,
                      const struct occupancy *occupancy, int body);
 void schur_rows_clear(struct schur_rows *rows);

@@ -13,6 +13,7 @@
 #include <cholmod.h>
 #include <stdbool.h>
 
+// In one unit, as those of the arms; levels are potentials.
 struct graph_link {
     int a, b;
     double conductance;
@@ -25,6 +26,7 @@ struct graph_arm {
 
 struct updated_cholesky;
 
+// It owns its arrays but those of the caller.
 struct cluster_laplacian {
     int n, n_left;       // rows, and those of them whose nodes have left
     double *present;     // (n) 1, or 0 once the node has left
@@ -53,7 +55,8 @@ struct cluster_laplacian *cluster_laplacian_create(cholmod_common *common, int n
                                                    const struct graph_link *link,
                                                    int *row, int *entry);
 
-// Gives the link at ENTRY another conductance, 0 or more.
+// Gives the link at ENTRY another conductance, 0 or more. The factor follows by a
+// rank-one update.
 void cluster_laplacian_set(struct cluster_laplacian *graph, int entry,
                            double conductance);
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two doubly linked lists of throats for each cluster, menisci and others, so that a
 // throat moves from list to list in O(1) when its cluster splits or gas reaches it.
+// Every throat with liquid is on one list: of_throat says which kind, cluster whose.
+// The trap: identities of clusters are used again. So whoever splits or empties a
+// cluster must call cluster_members_follow for each throat that it moves.
 #include "cluster_members.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
+// GROW_ARRAY doubles; what is new gets empty lists.
 static void reserve(struct cluster_members *members, int cluster)
 {
     const int before = members->capacity;
@@ -17,6 +21,7 @@ static void reserve(struct cluster_members *members, int cluster)
             members->first[c][l] = -1;
 }
 
+// The first of a list has no predecessor: then the head of the list moves.
 static void take_out(struct cluster_members *members, int throat)
 {
     const int next = members->next[throat], before = members->before[throat];
@@ -40,6 +45,8 @@ static void put_first(struct cluster_members *members, int throat, int cluster,
     *first = throat;
 }
 
+// Nothing where the throat is where it should be; -1 as a cluster is that of empty
+// throats.
 void cluster_members_follow(struct cluster_members *members,
                             const struct clusters *clusters, int throat)
 {
@@ -52,6 +59,7 @@ void cluster_members_follow(struct cluster_members *members,
     if (cluster >= 0) put_first(members, throat, cluster, list);
 }
 
+// From the last throat, so that each list begins with its lowest one.
 struct cluster_members cluster_members_init(const struct clusters *clusters,
                                             int n_throat)
 {

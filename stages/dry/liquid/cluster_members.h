@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The throats of each cluster in two lists: those that gas touches, and the others.
 // When a throat empties only the lists of its neighbours and of moved throats change.
+// Without lists each event would have to look at all throats of its cluster.
 #ifndef CRAQUELURE_CLUSTER_MEMBERS_H
 #define CRAQUELURE_CLUSTER_MEMBERS_H
 
@@ -8,6 +9,7 @@
 
 enum throat_list { LIST_INSIDE, LIST_MENISCI, LISTS };
 
+// It owns its arrays.
 struct cluster_members {
     int *cluster;   // (n_throat) on whose lists it is, -1: none
     int *next;      // (n_throat) on its list, -1: the last
@@ -22,6 +24,7 @@ struct cluster_members cluster_members_init(const struct clusters *clusters,
                                             int n_throat);
 
 // Moves THROAT to the list where CLUSTERS has it now; off all lists once it is empty.
+// O(1). Call it for every throat whose cluster or meniscus may have changed.
 void cluster_members_follow(struct cluster_members *members,
                             const struct clusters *clusters, int throat);
 

@@ -3,13 +3,18 @@
 // step 6]: vapour diffuses through it, its cluster may split, its two nodes fill with
 // gas. A node with gas and liquid beside it is wet: it evaporates. A node without
 // liquid beside it is dry and is eliminated from the vapour's system. Breakthrough is
-// gas at a closed wall opposite an open one.
+// gas at a closed wall opposite an open one. In code order, for a throat with the nodes
+// i and j: its liquid becomes 0, vapour_open_throat links i and j,
+// clusters_empty_throat splits its cluster, then at each node the number of liquid
+// throats falls by one: above 0 it is wet, at 0 it is dry. Volumes are compensated
+// sums, since a drying subtracts millions of small losses from them.
 #include "occupancy.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
+// Throats of other kinds have volume 0 and never liquid.
 static void fill_throats(struct occupancy *occupancy, double length)
 {
     const struct network *network = occupancy->network;
@@ -30,6 +35,8 @@ static void fill_throats(struct occupancy *occupancy, double length)
     occupancy->total_liquid.value = occupancy->initial_liquid;
 }
 
+// A set with O(1) insertion and removal: `wet` in any order, `wet_place` where each
+// stands.
 static void add_wet(struct occupancy *occupancy, int node)
 {
     if (occupancy->wet_place[node] >= 0) return;
@@ -37,6 +44,7 @@ static void add_wet(struct occupancy *occupancy, int node)
     occupancy->wet[occupancy->n_wet++] = node;
 }
 
+// The last one takes the place.
 static void remove_wet(struct occupancy *occupancy, int node)
 {
     const int place = occupancy->wet_place[node];
@@ -47,6 +55,8 @@ static void remove_wet(struct occupancy *occupancy, int node)
     occupancy->wet_place[node] = -1;
 }
 
+// A cluster without a meniscus has no throat that gas could enter: it would never dry,
+// and a run would not end.
 static enum status expose_surface(struct occupancy *occupancy, struct reason *reason)
 {
     for (int i = 0; i < occupancy->layer.n_exposed; i++) {
@@ -94,6 +104,8 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
     return expose_surface(occupancy, reason);
 }
 
+// The vapour's throat is opened before its nodes are dried, because elimination of a
+// node needs all its links.
 void occupancy_empty_throat(struct occupancy *occupancy, int throat)
 {
     occupancy->n_liquid--;
@@ -137,6 +149,7 @@ void occupancy_free(struct occupancy *occupancy)
     *occupancy = (struct occupancy){0};
 }
 
+// What follows from network and conditions (volumes, incidence, layer) is not kept.
 void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream)
 {
     const int n_node = occupancy->network->n_node,

@@ -9,6 +9,8 @@
 #include "dry/gas/boundary_layer.h"
 #include "dry/gas/vapour.h"
 
+// It owns its arrays and parts, not NETWORK. Volumes are scaled by the cube of the unit
+// of length.
 struct occupancy {
     const struct network *network;
     struct incidence incidence;
@@ -50,13 +52,15 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
                            struct boundary_layer layer, struct occupancy *occupancy,
                            struct reason *reason);
 
-// THROAT has lost its last liquid: gas fills it and both its nodes.
+// THROAT has lost its last liquid: gas fills it and both its nodes. The vapour gains a
+// link, and its cluster may split.
 void occupancy_empty_throat(struct occupancy *occupancy, int throat);
 
 // Saturation of THROAT, from 0 to 1. Only at the start and in viscous or Kelvin runs:
 // else emptying_times_saturation knows it.
 double occupancy_saturation(const struct occupancy *occupancy, int throat);
 
+// Keeps all that changes, or restores it into an occupancy just made.
 void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream);
 
 void occupancy_free(struct occupancy *occupancy);

@@ -19,6 +19,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+// The first step at which the rate is below this share of the first one; written once.
 static void note_first_period(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
@@ -36,6 +37,7 @@ static void begin(struct run *run)
     record_state(run);
 }
 
+// Kelvin first: it has a step of its own for each kind of liquid.
 static enum status take_step(struct run *run, struct reason *reason)
 {
     if (run->conditions->kelvin) return drying_step_kelvin(run, reason);
@@ -59,6 +61,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
     return status;
 }
 
+// From scaled to SI. The history is cut last, as it may end within a step.
 static void summarise(const struct run *run, struct drying_history *history)
 {
     history->boundary_layer_thickness = run->scale.boundary_layer * run->scale.length;
@@ -75,6 +78,7 @@ static void summarise(const struct run *run, struct drying_history *history)
 }
 
 // Removes the liquid that is missing at the start, and records it as step 0's changes.
+// Throats that begin full are not listed: full is what a reader assumes.
 static enum status start(struct run *run, struct reason *reason)
 {
     const struct drying_conditions *conditions = run->conditions;
@@ -95,7 +99,8 @@ static enum status start(struct run *run, struct reason *reason)
     return status;
 }
 
-// Makes what the kind of liquid needs, for the occupancy of now.
+// Makes what the kind of liquid needs, for the occupancy of now. Parts that a kind of
+// liquid does not need stay zero, and freeing them does nothing.
 static void prepare(struct run *run)
 {
     const struct network *network = run->occupancy.network;
@@ -133,6 +138,8 @@ static double *find_entry_priority(const struct network *network,
     return entry_priority;
 }
 
+// In immobile liquid each throat is a body by itself, so gas in a node does not part
+// clusters.
 static enum status make_occupancy(const struct network *network, struct run *run,
                                   struct reason *reason)
 {
@@ -162,7 +169,8 @@ static enum status make_occupancy(const struct network *network, struct run *run
     return status;
 }
 
-// At the start, or from the checkpoint of another run.
+// At the start, or from the checkpoint of another run. A restored run is prepared from
+// a full network first, then all that was kept is read over it.
 static enum status begin_run(struct run *run, const struct keeper *keeper,
                              struct reason *reason)
 {
@@ -198,6 +206,8 @@ static void free_run(struct run *run)
     occupancy_free(&run->occupancy);
 }
 
+// All checks before anything is made. A run with a tolerance cannot be kept: the state
+// of a front is that of doubles (dense_front_state).
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The growing arrays of a history, and how a checkpoint keeps them.
+// The growing arrays of a history, and how a checkpoint keeps them. Three tables that
+// only grow: steps, events, and the changes between two steps, of which step k has the
+// rows change_offset[k] to change_offset[k + 1] - 1. Storing changes in place of the
+// saturations of all throats at all steps is what keeps long runs small.
+//
+// The arrays of a table share one capacity and grow together.
 #include "history.h"
 
 #include "basics/memory.h"
@@ -12,6 +17,8 @@ struct recorder recorder_init(struct drying_history *history)
     return (struct recorder){.history = history};
 }
 
+// A copy of the capacity for the first array, so that the second still sees the old
+// one.
 void recorder_add_change(struct recorder *recorder, int throat, double saturation)
 {
     struct drying_history *history = recorder->history;
@@ -43,6 +50,7 @@ void recorder_add_event(struct recorder *recorder, double time, int throat,
     history->n_event++;
 }
 
+// One more offset than there are steps: the last is where the next step begins.
 void recorder_add_step(struct recorder *recorder, double time, double saturation,
                        double rate, int clusters)
 {
@@ -73,6 +81,7 @@ void recorder_set_last_rate(struct recorder *recorder, double rate)
 
 // --- state -------------------------------------------------------------------------
 
+// The number of rows comes first, with the first array.
 static void events_state(struct recorder *recorder, int n_throat,
                          struct checkpoint_stream *stream)
 {
@@ -101,6 +110,8 @@ static void changes_state(struct recorder *recorder, int n_throat,
     stream_numbers(stream, history->change_saturation, n);
 }
 
+// Offsets must not point behind the changes that there are; that they rise is checked
+// by run_fits.
 static void steps_state(struct recorder *recorder, int n_throat,
                         struct checkpoint_stream *stream)
 {

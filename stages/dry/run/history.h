@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records the run, step by step, in a struct drying_history (drying.h).
+// Records the run, step by step, in a struct drying_history (drying.h). Steps, events
+// and changes are three tables of different lengths; change_offset ties changes to
+// steps.
 #ifndef CRAQUELURE_HISTORY_H
 #define CRAQUELURE_HISTORY_H
 
 #include "checkpoint/stream.h"
 #include "drying.h"
 
-// A history that grows, and the capacities of its arrays.
+// A history that grows, and the capacities of its arrays. It does not own HISTORY;
+// drying_history_free frees the arrays.
 struct recorder {
     struct drying_history *history;
     int step_capacity;
@@ -17,7 +20,8 @@ struct recorder {
 // Starts HISTORY, which is overwritten. It is complete after each recorder_add_step.
 struct recorder recorder_init(struct drying_history *history);
 
-// A step's changes come before the step itself, ascending in throats.
+// A step's changes come before the step itself, ascending in throats. SATURATION from 0
+// to 1, of THROAT from this step on.
 void recorder_add_change(struct recorder *recorder, int throat, double saturation);
 // At TIME (s), not before the last one; THROAT by its index in the network.
 void recorder_add_event(struct recorder *recorder, double time, int throat,

@@ -39,12 +39,14 @@ static double depth_of(const struct snapshot *snapshot, int throat)
     return wall % 2 ? 1 - height : height;
 }
 
+// Nodes outside of the box count in the outermost slices.
 static int slice_of(const struct snapshot *snapshot, int throat)
 {
     const int slice = (int)(depth_of(snapshot, throat) * PROFILE_SLICES);
     return slice < 0 ? 0 : slice < PROFILE_SLICES ? slice : PROFILE_SLICES - 1;
 }
 
+// Full to begin with; changes of step 0 take off what was missing at the start.
 static struct snapshot snapshot_init(const struct network *network, unsigned open_walls,
                                      bool gas_parts)
 {
@@ -77,6 +79,8 @@ static void snapshot_free(struct snapshot *snapshot)
     free(snapshot->gas);
 }
 
+// The surface is all throats with a node on an open wall. fmin: sums of parts may pass
+// the whole by rounding.
 static void cut_profile(const struct snapshot *snapshot, double *slice, double *surface)
 {
     const struct network *network = snapshot->network;
@@ -97,6 +101,7 @@ static void cut_profile(const struct snapshot *snapshot, double *slice, double *
     *surface = full > 0 ? fmin(1, liquid / full) : 0;
 }
 
+// Union-find without ranks: the root of the later throat wins; only sizes are wanted.
 static void join(struct snapshot *snapshot, int throat, int node)
 {
     if (snapshot->gas_parts && snapshot->gas[node]) return;
@@ -111,7 +116,8 @@ static void join(struct snapshot *snapshot, int throat, int node)
     snapshot->size[a] += snapshot->size[b];
 }
 
-// Liquid throats are connected through nodes that gas has not entered.
+// Liquid throats are connected through nodes that gas has not entered. Class k has the
+// sizes from 2^k to 2^(k+1) - 1: the logarithm of a size by its highest bit.
 static void count_clusters(struct snapshot *snapshot, int32_t *count)
 {
     const struct network *network = snapshot->network;
@@ -142,6 +148,7 @@ static void apply_changes(struct snapshot *snapshot,
         snapshot->saturation[history->change_throat[c]] = history->change_saturation[c];
 }
 
+// The first step at or below LEVEL, or the last there is.
 static int go_on_to(struct snapshot *snapshot, const struct drying_history *history,
                     int step, double level)
 {
@@ -150,6 +157,7 @@ static int go_on_to(struct snapshot *snapshot, const struct drying_history *hist
     return step;
 }
 
+// Levels must fall, since steps are replayed once.
 struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
                               bool gas_parts, int n_level, const double *level,

@@ -23,6 +23,7 @@ double rate_now(const struct run *run)
                                    : vapour_rate(&run->occupancy.vapour);
 }
 
+// Both, because rounding may leave a saturation above 0 with no throat left.
 bool goes_on(const struct run *run)
 {
     return run->occupancy.n_liquid > 0 &&
@@ -37,6 +38,8 @@ bool snapshot_is_due(const struct run *run)
            network_saturation(run) <= run->conditions->snapshot[next];
 }
 
+// The last step always is. Where steps were skipped, the rate recorded before them is
+// replaced by the mean over the interval.
 bool step_is_due(struct run *run)
 {
     const double fallen = run->step_saturation - network_saturation(run);
@@ -59,6 +62,7 @@ void sort_ended(struct run *run)
     qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, rising_ints);
 }
 
+// SI from here on: scaled time and rate times their units.
 void record_state(struct run *run)
 {
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
@@ -77,6 +81,7 @@ void note_breakthrough(struct run *run)
         history->breakthrough_saturation = network_saturation(run);
 }
 
+// A rate of 0 with liquid left would give an infinite time to the next event.
 enum status refuse_standstill(const struct run *run, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
