@@ -11,6 +11,7 @@
 
 #include <float.h>
 
+// Eight units in the last place of the largest coordinate.
 double domain_rounding(const struct domain *domain)
 {
     double extent = 0;
@@ -20,6 +21,7 @@ double domain_rounding(const struct domain *domain)
     return 8 * DBL_EPSILON * extent;
 }
 
+// About the lower corner, as dem_rescale does.
 void domain_stretch(struct domain *box, double factor)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -31,6 +33,7 @@ void domain_stretch(struct domain *box, double factor)
     box->centre = midpoint(box->lower, box->upper);
 }
 
+// In m3, with the thickness of the layer in two dimensions.
 double domain_volume(const struct domain *domain)
 {
     const struct vector edge = subtract(domain->upper, domain->lower);
@@ -65,6 +68,7 @@ double domain_volume(const struct domain *domain)
     return volume;
 }
 
+// A ring is two cylinders: grains within one and around the other.
 int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES])
 {
     const bool flat = domain->dimensions == 2;

@@ -20,6 +20,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+// DIRECTION is 1 for a lower side, -1 for an upper one: the normal points to the
+// grains.
 static struct dem_wall plane(struct vector point, int axis, double direction)
 {
     struct dem_wall wall = {.point = point};
@@ -27,6 +29,8 @@ static struct dem_wall plane(struct vector point, int axis, double direction)
     return wall;
 }
 
+// No walls where the box repeats, across a plane, and where round walls stand; OPEN
+// leaves the top away.
 static int box_walls(const struct domain *domain, bool open, struct dem_wall *wall)
 {
     const bool round = domain->shape != DOMAIN_BOX;
@@ -50,6 +54,7 @@ static struct dem_wall round_wall(enum dem_wall_shape shape, struct vector centr
                              .radius = radius};
 }
 
+// Grains are outside of what is cut out; a block is so by nature.
 static int cut_walls(const struct domain *domain, struct dem_wall *wall)
 {
     const struct vector edge = subtract(domain->cut_upper, domain->cut_lower);
@@ -65,6 +70,8 @@ static int cut_walls(const struct domain *domain, struct dem_wall *wall)
     return 1;
 }
 
+// The factor by which all radii must shrink so that nothing overlaps: the least of
+// distance over sum of radii, for pairs, and over the radius, for walls.
 double fitting_size(const struct packing *packing)
 {
     double fits = 1;
@@ -88,6 +95,7 @@ double fitting_size(const struct packing *packing)
     return fits;
 }
 
+// Round walls after flat ones; MAX_WALLS is enough for all shapes with a cut-out.
 int domain_walls(const struct domain *domain, const struct dynamics_parameters *how,
                  bool open, struct dem_wall wall[MAX_WALLS])
 {
@@ -109,6 +117,7 @@ int domain_walls(const struct domain *domain, const struct dynamics_parameters *
     return n;
 }
 
+// Overlaps count twice. In two dimensions discs fill the layer.
 double solid_fraction(const struct domain *domain, const struct packing *packing)
 {
     const double room = domain_volume(domain);
@@ -122,6 +131,7 @@ double solid_fraction(const struct domain *domain, const struct packing *packing
     return share;
 }
 
+// A clone of the random stream: the grains drawn later are these.
 double drawn_fraction(const struct making *making, int count)
 {
     gsl_rng *same = gsl_rng_clone(making->random);
@@ -134,6 +144,8 @@ double drawn_fraction(const struct making *making, int count)
     return fraction;
 }
 
+// Damping ratio and stiffness are the same in all methods; what differs is gravity,
+// walls and the safety of the step.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason)
@@ -159,6 +171,7 @@ enum status start_dynamics(const struct making *making, double stiffness, double
     return status;
 }
 
+// PROTOCOL is what a method must remember besides the engine: COUNT numbers of its own.
 enum status restore_dynamics(const struct making *making, struct dem *dem,
                              double *protocol, int count, struct reason *reason)
 {
@@ -185,6 +198,7 @@ void keep_dynamics_if_due(const struct making *making, const struct dem *dem,
     keep_state(making->how->keeper, dem, list);
 }
 
+// Radii too, because some methods let grains grow.
 void take_grains(const struct making *making, const struct dem *dem)
 {
     struct packing *packing = making->packing;
@@ -206,7 +220,8 @@ double largest_speed(const struct making *making, const struct dem *dem)
     return largest;
 }
 
-// The engine divides by the volume of its box, not of the domain.
+// The engine divides by the volume of its box, not of the domain. Round domains fill
+// only part of the engine's box. Compression is positive.
 double mean_stress(const struct making *making, const struct dem *dem)
 {
     const struct dem_census census = dem_census(dem);
@@ -218,6 +233,8 @@ double mean_stress(const struct making *making, const struct dem *dem)
     return sum / making->domain->dimensions / room;
 }
 
+// Grains with too few contacts to be held are left out, once: what they leave behind is
+// not looked at again.
 double backbone_coordination(const struct making *making, const struct dem *dem)
 {
     const int n = making->packing->n_particle;
@@ -240,6 +257,7 @@ double backbone_coordination(const struct making *making, const struct dem *dem)
     return backbone > 0 ? sum / backbone : 0;
 }
 
+// CYCLES and TIME add up, because a method may run several engines.
 void note_end(const struct making *making, const struct dem *dem)
 {
     struct reached *reached = making->reached;

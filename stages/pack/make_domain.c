@@ -6,6 +6,10 @@
 // Where cylinders, rings and spheres contain a cut-out is decided by its farthest and
 // nearest points from the axis, or from the centre: for a box those of its corners and
 // faces, which is exact as all domains are convex but for the hole of a ring.
+//
+// A domain is given by the box around it, even if it is round: lower = centre - half,
+// upper = centre + half, with half the radius along round axes and half the height
+// along z. In two dimensions (x and z) the box is one largest diameter thick along y.
 #include "domain.h"
 
 static struct vector vector_of(const double three[3])
@@ -15,6 +19,8 @@ static struct vector vector_of(const double three[3])
 
 // ---- the shape ----------------------------------------------------------------------
 
+// The lower corner is the origin unless given. Comparisons are written so that NAN
+// fails.
 static enum status make_box(const struct domain_parameters *parameters,
                             struct domain *domain, double largest,
                             struct reason *reason)
@@ -38,6 +44,7 @@ static enum status make_box(const struct domain_parameters *parameters,
     return STATUS_OK;
 }
 
+// A box that repeats and a round wall across it would contradict each other.
 static enum status check_round(const struct domain_parameters *parameters,
                                const struct domain *domain, struct reason *reason)
 {
@@ -65,6 +72,7 @@ static enum status check_round(const struct domain_parameters *parameters,
     return STATUS_OK;
 }
 
+// The centre, unless given, is where the box begins at the origin.
 static enum status make_round(const struct domain_parameters *parameters,
                               struct domain *domain, double largest,
                               struct reason *reason)
@@ -84,7 +92,8 @@ static enum status make_round(const struct domain_parameters *parameters,
     return STATUS_OK;
 }
 
-// Refuses a shape too narrow for the largest grain.
+// Refuses a shape too narrow for the largest grain. Slack is what rounding of
+// coordinates may take, so that a box exactly as wide as a grain passes.
 static enum status check_room(const struct domain *domain, double largest,
                               struct reason *reason)
 {
@@ -112,6 +121,8 @@ static enum status check_room(const struct domain *domain, double largest,
 
 // ---- what is cut out ----------------------------------------------------------------
 
+// A cylinder goes from bottom to top unless its ends are given; in two dimensions
+// everything goes through the layer.
 static enum status make_cut(const struct domain_parameters *parameters,
                             struct domain *domain, struct reason *reason)
 {
@@ -159,6 +170,7 @@ static double cut_farthest(const struct domain *domain)
     return across(fabs(apart.x) + edge.x / 2, fabs(apart.y) + edge.y / 2);
 }
 
+// Not below 0 along either axis: the box may reach across the axis.
 static double cut_nearest(const struct domain *domain)
 {
     const struct vector apart = subtract(domain->cut_centre, domain->centre);
@@ -168,7 +180,8 @@ static double cut_nearest(const struct domain *domain)
                   fmax(fabs(apart.y) - edge.y / 2, 0));
 }
 
-// Largest distance of the cut-out from the centre of the domain, m.
+// Largest distance of the cut-out from the centre of the domain, m. The farthest corner
+// of a box, the rim of a cylinder, the far pole of a sphere.
 static double cut_reach(const struct domain *domain)
 {
     const struct vector apart = subtract(domain->cut_centre, domain->centre);
@@ -183,7 +196,8 @@ static double cut_reach(const struct domain *domain)
                                 flat * (fabs(apart.y) + edge.y / 2), up});
 }
 
-// Refuses a cut-out that is not inside the domain: the volume would not be known.
+// Refuses a cut-out that is not inside the domain: the volume would not be known. The
+// box around the cut-out against the box of the domain, then round walls by distances.
 static enum status check_cut(const struct domain *domain, struct reason *reason)
 {
     const double slack = domain_rounding(domain);
@@ -233,6 +247,7 @@ enum status domain_init(const struct domain_parameters *parameters, int dimensio
     return status ? status : cut_out(parameters, domain, reason);
 }
 
+// For lattices by counts: the box follows from them and only the cut-out is the user's.
 enum status domain_around(const struct domain_parameters *parameters, int dimensions,
                           struct vector lower, struct vector upper,
                           struct domain *domain, struct reason *reason)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// From the user's parameters to grains: which method, in which domain, how many.
 #ifndef CRAQUELURE_PACK_METHODS_H
 #define CRAQUELURE_PACK_METHODS_H
 
@@ -12,7 +13,8 @@
 // grains that moving starts from. The seed of PARAMETERS decides all that is random. On
 // success the caller frees *PACKING. STATUS_BAD_DATA: parameters that contradict each
 // other, with the key in the reason; STATUS_NOT_CONVERGED: grains that did not fit, or
-// a target that was not reached.
+// a target that was not reached. PROGRESS is updated on the way. The same parameters
+// give the same bytes for any number of threads.
 enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct progress *progress, struct domain *domain,
                         struct packing *packing, struct reached *reached,

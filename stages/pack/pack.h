@@ -28,7 +28,7 @@ enum lattice {
 };
 
 // Edges of the box that COUNTS unit cells fill, m: whole cells where it repeats, around
-// the grains elsewhere.
+// the grains elsewhere. RADIUS in m.
 struct vector lattice_extent(enum lattice lattice, const int64_t counts[3],
                              double radius, const bool periodic[3]);
 
@@ -37,7 +37,8 @@ struct vector lattice_extent(enum lattice lattice, const int64_t counts[3],
 enum status lattice_counts(enum lattice lattice, const struct domain *domain,
                            double radius, int64_t counts[3], struct reason *reason);
 
-// Grains of COUNTS unit cells; -1 when they are more than 1e8.
+// Grains of COUNTS unit cells; -1 when they are more than 1e8. Before those outside of
+// a round domain are left away.
 int64_t lattice_grains(enum lattice lattice, const int64_t counts[3]);
 
 // Those of them that lie wholly in DOMAIN, x slowest. The caller frees the packing.
@@ -48,7 +49,7 @@ struct packing lattice_packing(enum lattice lattice, const int64_t counts[3],
 
 // COUNT grains at independent random points, uniformly distributed where a grain of
 // that size fits: they may overlap. STATUS_BAD_DATA if what is cut out leaves no room.
-// On success the caller frees *PACKING.
+// On success the caller frees *PACKING. RANDOM advances.
 enum status poisson_points(const struct domain *domain, const struct sizes *sizes,
                            int count, gsl_rng *random, struct packing *packing,
                            struct reason *reason);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of pack.
+// The parameters of pack. NAN, or 0 for counts: not given. What stands in for it
+// depends on the method (methods.c).
 #ifndef CRAQUELURE_PACK_PARAMETERS_H
 #define CRAQUELURE_PACK_PARAMETERS_H
 
@@ -30,14 +31,15 @@ enum method {
 };
 
 // Which grains are bonded: none, those that touch within touching_gap, or as INPUT
-// says.
+// says. "touching" needs no forces: two grains whose surfaces are near enough.
 enum bonds { BONDS_NONE, BONDS_TOUCHING, BONDS_KEEP };
 
 // What happens to a packing that is impossible: refused, reported, or not looked at.
 // One that is only unlikely is reported (geometry/packing_check.h).
 enum check { CHECK_REFUSE, CHECK_WARN, CHECK_NONE };
 
-// What the table reads into; NAN: not given.
+// What the table reads into; NAN: not given. Lengths in m. The int members are places
+// of choices in the table.
 struct pack_parameters {
     int method, bonds, check; // enum method, enum bonds, enum check
     int64_t dimensions;

@@ -48,7 +48,8 @@ void report_number(struct packing_report *report, const char *name, double numbe
         (struct report_entry){.name = name, .number = number};
 }
 
-// Takes VALUE over.
+// Takes VALUE over. A curve with one number that is not finite is dropped whole: half
+// of it would mislead.
 static void report_curve(struct packing_report *report, const char *name, double *value,
                          int count)
 {
@@ -76,7 +77,7 @@ static double *class_middles(double low, double width, int count)
 // ---- where --------------------------------------------------------------------------
 
 // The largest cuboid in a cylinder or sphere with equal edges along its round axes,
-// MARGIN away from the wall.
+// MARGIN away from the wall. False where nothing is left of it.
 static bool cuboid_within(const struct subject *subject, double margin,
                           struct window *window)
 {
@@ -100,6 +101,8 @@ static bool cuboid_within(const struct subject *subject, double margin,
     return true;
 }
 
+// A ring or a domain with a cut-out has no inscribed cuboid that stands for it: no bulk
+// then, and no slices.
 static void choose_windows(struct subject *subject)
 {
     const struct domain *domain = subject->domain;
@@ -136,6 +139,7 @@ static bool reaches_round(const struct packing *packing)
 
 // ---- measurements -------------------------------------------------------------------
 
+// One size has no histogram.
 static void say_sizes(const struct packing *packing, struct packing_report *report)
 {
     const int n = packing->n_particle;
@@ -160,6 +164,7 @@ static void say_sizes(const struct packing *packing, struct packing_report *repo
     report_curve(report, "/structure/radius/count", count, SIZES);
 }
 
+// Over the smaller radius, as schemas/packing.json says; pairs across a gap count as 0.
 static void say_overlaps(const struct subject *subject, struct packing_report *report)
 {
     const struct packing *packing = subject->packing;
@@ -204,6 +209,7 @@ static int *touched_walls(const struct subject *subject)
     return walls;
 }
 
+// Rattlers carry nothing: `firm` counts contacts between grains that are none.
 static void say_contacts(const struct subject *subject, struct packing_report *report)
 {
     const int n = subject->packing->n_particle;
@@ -234,6 +240,7 @@ static void say_contacts(const struct subject *subject, struct packing_report *r
     free(rattler);
 }
 
+// Nothing without contacts.
 static void say_fabric(const struct subject *subject, struct packing_report *report)
 {
     double *fabric = NEW_ARRAY(double, 9);
@@ -251,6 +258,7 @@ static void say_fabric(const struct subject *subject, struct packing_report *rep
     report_curve(report, "/structure/inclination/density", density, INCLINATIONS);
 }
 
+// Slices about a fifth of a diameter high, at most MAX_SLICES.
 static void say_porosity(const struct subject *subject, struct packing_report *report)
 {
     const struct packing *packing = subject->packing;
@@ -275,7 +283,8 @@ static void say_porosity(const struct subject *subject, struct packing_report *r
     report_curve(report, "/structure/slice/porosity", porosity, count);
 }
 
-// g(r), to five diameters or as far as the bulk reaches.
+// g(r), to five diameters or as far as the bulk reaches. The first class is centred at
+// 0, so distances are multiples of the width.
 static void say_distances(const struct subject *subject, struct packing_report *report)
 {
     if (!subject->has_bulk) return;
@@ -326,6 +335,7 @@ void report_free(struct packing_report *report)
 
 // ---- out ----------------------------------------------------------------------------
 
+// The schema says which numbers are counts.
 static bool is_integer(const struct schema *schema, const struct report_entry *entry)
 {
     const json_t *row = entry->count ? schema_dataset(schema, entry->name)

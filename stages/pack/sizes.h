@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size distributions of grains, drawn one radius at a time.
+// Size distributions of grains, drawn one radius at a time. Prepared once, then drawn
+// from in O(1) or O(log pieces): continuous distributions are cut into pieces, each of
+// which is drawn from by inversion.
 #ifndef CRAQUELURE_PACK_SIZES_H
 #define CRAQUELURE_PACK_SIZES_H
 
@@ -21,6 +23,7 @@ enum size_distribution {
     SIZES_SIEVE      // linear between the points of a sieve curve
 };
 
+// What the shares of a distribution are shares of: a sieve gives them by mass.
 enum size_share { SHARE_OF_NUMBER, SHARE_OF_MASS };
 
 // The user's parameters; NAN where not given.
@@ -39,7 +42,8 @@ struct size_parameters {
 enum { SIZE_PIECES = LIST_MOST };
 
 // The same, ready to draw from. Shares of mass become shares of number: grains of one
-// density, so the number density is the mass density over r^3.
+// density, so the number density is the mass density over r^3. A value, without
+// pointers: it may be copied.
 struct sizes {
     int distribution;
     double smallest, largest; // every radius lies from here to there, m
