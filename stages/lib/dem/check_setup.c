@@ -2,6 +2,10 @@
 // Refuses an impossible setup: one line that names what is wrong, the row, the rule and
 // the value. Everything is checked as given, in SI, before it is scaled. Comparisons
 // are written so that NAN fails them.
+//
+// What is refused is what no later check could explain: a negative mass would first
+// show as a time step that is not a number. What is only unwise (a step near the limit)
+// is for others to judge.
 #include "dem/engine.h"
 
 #include <math.h>
@@ -12,6 +16,7 @@ static bool is_finite_vector(struct vector a)
 }
 
 // A number in [LOW, HIGH]; an infinite HIGH itself is not in it unless OR_INFINITE.
+// Infinite strengths are fine, infinite stiffnesses are not.
 struct quantity {
     const char *name;
     double value, low, high;
@@ -19,6 +24,7 @@ struct quantity {
     bool or_infinite;
 };
 
+// Messages in the words of intervals: "must be in (0,1], got 1.2".
 static enum status check_quantity(const struct quantity *q, struct reason *reason)
 {
     const bool low = q->above ? q->value > q->low : q->value >= q->low;
@@ -42,6 +48,8 @@ static enum status check_quantities(const struct quantity *q, size_t count,
 #define CHECK(list, reason)                                                            \
     check_quantities(list, sizeof(list) / sizeof *(list), reason)
 
+// Only the members that the law uses are looked at; the others may be anything. Local
+// damping is below 1, by the last double before it: at 1 no force would be left.
 static enum status check_material(const struct dem_material *m, enum dem_law law,
                                   struct reason *reason)
 {
@@ -70,6 +78,8 @@ static enum status check_material(const struct dem_material *m, enum dem_law law
                               : CHECK(linear, reason);
 }
 
+// Tables of pairs need not be symmetric to be safe, only in range; callers keep them
+// so.
 static enum status check_materials(const struct dem_setup *setup, struct reason *reason)
 {
     const int n = 1 + setup->n_other;
@@ -100,6 +110,8 @@ static enum status check_materials(const struct dem_setup *setup, struct reason 
     return STATUS_OK;
 }
 
+// A parallel bond resists rolling by its own bending, and the kernels have no set of
+// features with both.
 static enum status check_rolling(const struct dem_setup *setup, struct reason *reason)
 {
     const int n = 1 + setup->n_other;
@@ -113,6 +125,8 @@ static enum status check_rolling(const struct dem_setup *setup, struct reason *r
                   "rolling friction does not go with bonds: leave out one of them");
 }
 
+// Stiffnesses and strengths are checked even without bonds; geometry and the law's fit
+// only with them.
 static enum status check_bonds(const struct dem_setup *setup, struct reason *reason)
 {
     const struct dem_bond_material *b = &setup->bond;
@@ -141,6 +155,7 @@ static enum status check_bonds(const struct dem_setup *setup, struct reason *rea
     return STATUS_OK;
 }
 
+// At a contact angle of pi the liquid wets nothing, and there is no bridge.
 static enum status check_liquid(const struct dem_liquid *l, struct reason *reason)
 {
     const double no_limit = INFINITY;
@@ -155,6 +170,7 @@ static enum status check_liquid(const struct dem_liquid *l, struct reason *reaso
     return CHECK(quantity, reason);
 }
 
+// The safety counts only where nothing else sets the step.
 static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
 {
     enum status status = check_materials(setup, reason);
@@ -176,6 +192,8 @@ static enum status check_numbers(const struct dem_setup *setup, struct reason *r
     return CHECK(step, reason);
 }
 
+// Sizes by shape: a plane has none, a block has edges, all others a radius. A servo
+// moves along the normal, so only a plane can have one.
 static enum status check_wall(const struct dem_setup *setup, int w,
                               struct reason *reason)
 {
@@ -216,6 +234,7 @@ static enum status check_wall(const struct dem_setup *setup, int w,
     return STATUS_OK;
 }
 
+// A grain has one master: it is fixed, or driven, or free.
 static enum status check_groups(const struct dem_setup *setup, struct reason *reason)
 {
     if (!(setup->n_group >= 0 && setup->n_group <= UINT8_MAX))
@@ -246,6 +265,8 @@ static enum status check_groups(const struct dem_setup *setup, struct reason *re
     return STATUS_OK;
 }
 
+// That bonds are not listed twice, and that their grains do not coincide, is checked
+// once pairs are known (check_pairs).
 static enum status check_scene(const struct dem_setup *setup, struct reason *reason)
 {
     const struct packing *packing = setup->packing;

@@ -33,7 +33,9 @@ static double bond_radius(const struct dem_setup *setup, int bond)
 }
 
 // The largest translational stiffness between two grains, or a grain and a wall, N/m,
-// of linear contacts and bonds. Two equal springs in series make half of one.
+// of linear contacts and bonds. Two equal springs in series make half of one. A wall is
+// rigid unless it says otherwise, so a grain at a wall keeps its whole stiffness. A
+// contact bond has the stiffness of the contact.
 static double largest_linear_stiffness(const struct dem_setup *setup)
 {
     double normal_stiffness = 0, shear_stiffness = 0;
@@ -55,7 +57,9 @@ static double largest_linear_stiffness(const struct dem_setup *setup)
     return largest;
 }
 
-// Stiffness of [G 2] for the heaviest pair, or the heaviest grain at a wall.
+// Stiffness of [G 2] for the heaviest pair, or the heaviest grain at a wall. k = m
+// (pi^2 + ln^2 e) / t^2 rises with the mass and as e falls: the heaviest pair with the
+// smallest restitution bounds it. Two equal grains have half the mass of one.
 static double largest_timed_stiffness(const struct dem_setup *setup, double heaviest)
 {
     double logarithm = 0;
@@ -70,7 +74,8 @@ static double largest_timed_stiffness(const struct dem_setup *setup, double heav
 }
 
 // Hertz: tangent 2 E* sqrt(R* U) of the stiffest material at the largest overlap
-// expected. The stiffest partner is a rigid wall.
+// expected. The stiffest partner is a rigid wall. Only a unit: a contact that is
+// pressed further is stiffer than 1, which is fine.
 static double largest_hertz_stiffness(const struct dem_setup *setup, double mean_radius,
                                       double largest_radius)
 {
@@ -84,6 +89,7 @@ static double largest_hertz_stiffness(const struct dem_setup *setup, double mean
     return 2 * modulus * sqrt(share * mean_radius * largest_radius);
 }
 
+// Without grains (walls alone) all units are 1.
 static struct units choose_units(const struct dem_setup *setup)
 {
     const int n = setup->packing->n_particle;
@@ -108,6 +114,9 @@ static struct units choose_units(const struct dem_setup *setup)
     return unit;
 }
 
+// Stiffnesses over `stiffness`, moduli over stiffness / length, densities over mass /
+// length^3. Tables of pairs that were not given are filled with the smaller value [K
+// 4.25].
 static void take_materials(struct dem *dem, const struct dem_setup *setup)
 {
     const int n = dem->n_material = 1 + setup->n_other;
@@ -150,6 +159,7 @@ static void take_materials(struct dem *dem, const struct dem_setup *setup)
     dem->bond_shear_stiffness = setup->bond.shear_stiffness * area / stiffness;
 }
 
+// One place and one motion more: the dummy grain, which unused lanes pair with itself.
 static void new_grains(struct dem *dem, int n)
 {
     const size_t n_with_dummy = (size_t)n + 1;
@@ -176,6 +186,8 @@ static void new_grains(struct dem *dem, int n)
         dem->grain_ledger = allocate((size_t)n, sizeof *dem->grain_ledger);
 }
 
+// 16 roundings of the farthest coordinate: grains that a text file has touching may be
+// that far apart or in each other.
 static void take_box(struct dem *dem, const struct packing *packing)
 {
     double largest_distance = 1;
@@ -192,6 +204,7 @@ static void take_box(struct dem *dem, const struct packing *packing)
     }
 }
 
+// Driven grains get the mobility of fixed ones: forces do not move them.
 static void take_grains(struct dem *dem, const struct dem_setup *setup)
 {
     const struct packing *packing = setup->packing;
@@ -221,6 +234,8 @@ static void take_grains(struct dem *dem, const struct dem_setup *setup)
     start_groups(dem);
 }
 
+// Strengths of parallel bonds are stresses, of contact bonds forces. Grains in rising
+// order, as pairs have them.
 static void take_bonds(struct dem *dem, const struct dem_setup *setup)
 {
     const int n = dem->n_bond = setup->packing->n_bond;
@@ -250,6 +265,7 @@ static struct vector scaled(struct vector a, double unit)
     return (struct vector){a.x / unit, a.y / unit, a.z / unit};
 }
 
+// The normal gets length 1; of spheres and blocks it means nothing and stays.
 static void take_walls(struct dem *dem, const struct dem_setup *setup)
 {
     const double length = dem->unit.length, time = dem->unit.time;
@@ -271,6 +287,7 @@ static void take_walls(struct dem *dem, const struct dem_setup *setup)
     }
 }
 
+// Friction of walls alone makes grains turn.
 static bool walls_grip(const struct dem_setup *setup)
 {
     bool grip = false;
@@ -289,6 +306,7 @@ static bool pairs_are_alike(const struct dem *dem)
     return alike;
 }
 
+// The fewest that are enough: each one costs time in every pair of every cycle.
 static unsigned choose_features(const struct dem *dem, const struct dem_setup *setup)
 {
     bool grip = dem->n_bond > 0 || walls_grip(setup), rolls = false;
@@ -307,6 +325,8 @@ static unsigned choose_features(const struct dem *dem, const struct dem_setup *s
     return features;
 }
 
+// In scaled units the critical step of [K 4.47] is 2 sqrt(m) for the lightest grain at
+// the largest stiffness, 1.
 static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
 {
     double lightest = INFINITY;
@@ -323,7 +343,8 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
                          : setup->time_step_safety * 2 * sqrt(fmin(lightest, 1));
 }
 
-// Each pair must be near in one image only.
+// Each pair must be near in one image only. Twice the longest distance at which two
+// grains are a pair: otherwise the list would need the image of each.
 static enum status check_periods(const struct dem *dem, struct reason *reason)
 {
     const double least =
@@ -372,6 +393,7 @@ static void set_reference_gaps(struct dem *dem)
     }
 }
 
+// A step of 0 or NAN comes from densities or stiffnesses that overflow.
 static enum status check_time_step(const struct dem *dem, const struct dem_setup *setup,
                                    struct reason *reason)
 {
@@ -392,11 +414,13 @@ static enum status check_time_step(const struct dem *dem, const struct dem_setup
         step, limit, setup->time_step_safety * limit / step, setup->time_step_safety);
 }
 
+// The bytes are the same; only speed depends on the processor.
 static pair_sweep *choose_sweep(unsigned features)
 {
     return has_avx512() ? pair_sweeps_avx512[features] : pair_sweeps_avx2[features];
 }
 
+// On failure dem_free frees what there is: all pointers begin as NULL.
 static enum status build(struct dem *dem, const struct dem_setup *setup,
                          struct reason *reason)
 {

@@ -188,6 +188,7 @@ static int by_particles(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
+// Geometry is that of the last forces, a step before the places.
 struct dem_contact *dem_contacts(const struct dem *dem, int *count)
 {
     struct dem_contact *contact =
@@ -217,6 +218,7 @@ static void count_contact(struct dem_census *census, double overlap)
     census->largest_overlap = fmax(census->largest_overlap, overlap);
 }
 
+// Bridges across a gap count in the stress, not as contacts.
 struct dem_census dem_census(const struct dem *dem)
 {
     struct dem_census census = {.contacts = 0};

@@ -16,7 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Separation from grain I to J now, to the nearest image.
+// Separation from grain I to J now, to the nearest image. For geometry only, as
+// position_now rounds.
 static struct vector separation_now(const struct dem *dem, int i, int j)
 {
     struct vector apart = subtract(position_now(dem, j), position_now(dem, i));
@@ -38,6 +39,8 @@ static struct lane lane_of(int pair)
     return (struct lane){pair / PAIRS_IN_GROUP, pair % PAIRS_IN_GROUP};
 }
 
+// `periods` is a whole number of box edges, exact but for the rounding of one
+// subtraction; added to the difference of the starts it keeps their digits.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
 {
     const int i = first_grain(group, lane), j = second_grain(group, lane);
@@ -79,6 +82,8 @@ struct contact_law law_of_pair(const struct dem *dem, int pair)
                                 .shear_damping = laws->shear_damping[at.at]};
 }
 
+// Strengths times A R = pi R^3 for parallel bonds (pair_bond.h). A broken bond leaves
+// -1.
 static void set_bond(struct dem *dem, struct lane to, int bond)
 {
     struct bond_group *bonds = &dem->pairs.bonds[to.group];
@@ -94,6 +99,8 @@ static void set_bond(struct dem *dem, struct lane to, int bond)
     bonds->shear_strength[to.at] = unit * dem->bond_strength[DEM_CRACK_SHEAR][bond];
 }
 
+// At a distance of 1, so that nothing is divided by 0, and an overlap of -1, so that
+// nothing acts.
 void set_dummy_pair(struct dem *dem, int pair)
 {
     const struct lane to = lane_of(pair);
@@ -106,6 +113,8 @@ void set_dummy_pair(struct dem *dem, int pair)
     if (dem->pairs.bonds) set_bond(dem, to, -1);
 }
 
+// The coefficients are not carried: they follow from the grains, whose radii may have
+// changed.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped)
 {
@@ -137,6 +146,7 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
     liquid->rupture[to.at] = old->liquid[from.group].rupture[from.at];
 }
 
+// Both lists are sorted by first, then second grain: `before` only goes forward.
 static void fill_pairs(struct dem *dem, const struct pair_list *old)
 {
     struct pair_list *pairs = &dem->pairs;
@@ -211,6 +221,7 @@ void free_pairs(struct pair_list *pairs)
     free(pairs->rolling);
 }
 
+// In the order of pairs, so that the sum does not depend on threads.
 void close_pair_ledger(struct dem *dem)
 {
     if (!dem->pairs.loss) return;
@@ -226,7 +237,7 @@ void close_pair_ledger(struct dem *dem)
 }
 
 // Lists the pairs of each grain. As pairs are sorted, those of which it is the second
-// come first.
+// come first. Counting sort: pair_of[pair_offset[i]] on are the pairs of grain i.
 static void list_pairs_of_grains(struct dem *dem)
 {
     const int n = dem->n_particle, n_pair = dem->pairs.n_pair;

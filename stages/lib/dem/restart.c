@@ -18,6 +18,7 @@
 
 // ---- out ----------------------------------------------------------------------------
 
+// Number by number, since lanes of a column do not lie together.
 static struct named_array gather(const struct column *c)
 {
     const size_t size = number_size(c->type);
@@ -31,6 +32,7 @@ static struct named_array gather(const struct column *c)
 
 static const char bonds_name[] = "bond_intact";
 
+// Which bonds are intact is no column: strengths are in two arrays and -1 says it.
 struct named_array *dem_save(const struct dem *dem, int *count)
 {
     // Only read through the list; it serves dem_restore too.
@@ -52,6 +54,7 @@ struct saved {
     struct reason *reason;
 };
 
+// NULL with the reason where it is missing, of another type or length, or out of range.
 static const struct named_array *find(const struct saved *saved, const char *name,
                                       enum array_type type, int64_t count, double least,
                                       double most)
@@ -94,6 +97,7 @@ static enum status take_order(struct dem *dem, const struct saved *saved)
     return STATUS_OK;
 }
 
+// Before the list of pairs is made, because that copies strengths into its groups.
 static enum status take_broken(struct dem *dem, const struct saved *saved)
 {
     const struct named_array *array =
@@ -106,7 +110,9 @@ static enum status take_broken(struct dem *dem, const struct saved *saved)
     return STATUS_OK;
 }
 
-// Checks that pairs are sorted, each once, with every bond between its grains.
+// Checks that pairs are sorted, each once, with every bond between its grains. The
+// kernel trusts the order: grains of a group follow each other, and a grain's last pair
+// tells when it can move.
 static enum status check_list(const struct dem *dem, int n,
                               const int32_t (*particle)[2], const int32_t *bond,
                               struct reason *reason)
@@ -151,6 +157,7 @@ static enum status take_list(struct dem *dem, const struct saved *saved)
     return STATUS_OK;
 }
 
+// Arrays whose lengths the setup does not know.
 static enum status make_room(struct dem *dem, const struct saved *saved)
 {
     const int n_wall_pair = rows_of(saved, "wall_pair_particle", 1);
@@ -170,6 +177,7 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
     return STATUS_OK;
 }
 
+// The reverse of gather.
 static enum status scatter(const struct column *c, const struct saved *saved)
 {
     const struct named_array *array =
@@ -183,6 +191,7 @@ static enum status scatter(const struct column *c, const struct saved *saved)
     return STATUS_OK;
 }
 
+// Neither more nor fewer arrays: a file of another scene would otherwise pass in part.
 static enum status take_numbers(struct dem *dem, const struct saved *saved)
 {
     const struct column_list list = list_columns(dem);
@@ -254,6 +263,8 @@ static void derive(struct dem *dem)
     set_equal_mobility(dem);
 }
 
+// In this order because each needs the one before: order of grains, bonds, pairs,
+// lengths, numbers.
 enum status dem_restore(struct dem *dem, const struct named_array *array, int count,
                         struct reason *reason)
 {

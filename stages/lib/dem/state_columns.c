@@ -2,6 +2,15 @@
 // The list of all columns of the state, with type, shape, place in memory and range.
 // Both saving and restoring go through it (restart.c), so the two cannot differ. Names
 // are those in checkpoint files: they stay when a member is renamed.
+//
+// A column points at numbers where they lie: rows of an array, a member of structs, or
+// a lane of groups, of which the address of number k in row r is
+//
+//     base + offset + r stride + k size                          rows
+//     base + offset + (r / 8) stride + (8 k + r % 8) size        lanes
+//
+// Ranges are those outside of which a state cannot be one, so a damaged file is refused
+// before it is used. They need not be tight.
 #include "dem/state_columns.h"
 
 // The range of the schemas: squares of larger numbers would overflow.
@@ -18,12 +27,14 @@ char *column_address(const struct column *c, int64_t row, int k)
            ((size_t)k * PAIRS_IN_GROUP + lane) * size;
 }
 
+// Returned, so that callers may narrow its range.
 static struct column *add_column(struct column_list *list, struct column column)
 {
     list->column[list->count] = column;
     return &list->column[list->count++];
 }
 
+// Only of runs that shortened their step: others choose the same one again.
 static void add_time_step(struct column_list *list, struct dem *dem)
 {
     if (!dem->step_was_shortened) return;
@@ -48,6 +59,8 @@ static void add_time_step(struct column_list *list, struct dem *dem)
                                      .most = largest_count});
 }
 
+// Gravity, friction and damping are state, because callers may change them during a
+// run.
 static void add_scalars(struct column_list *list, struct dem *dem)
 {
     const struct {
@@ -78,7 +91,8 @@ static void add_scalars(struct column_list *list, struct dem *dem)
                                          .most = of[k].most});
 }
 
-// A member of the structs of an array.
+// A member of the structs of an array. Where a member lies: its array, the bytes from
+// row to row, and those to the member.
 struct where {
     void *base;
     size_t stride, offset;
@@ -112,6 +126,8 @@ static struct column *add_integers(struct column_list *list, const char *name,
     return column;
 }
 
+// The motion of grains is kept whole, driven ones included. `identity` gives the order,
+// which fixes that of all sums.
 static void add_grains(struct column_list *list, struct dem *dem)
 {
     const int n = dem->n_particle;
@@ -131,6 +147,8 @@ static void add_grains(struct column_list *list, struct dem *dem)
         add_numbers(list, "grain_books", WHOLE(dem->grain_ledger), 2, n);
 }
 
+// Velocities as asked for and as they are, since a servo has its own. Rows of pairs are
+// kept with their last loads: what is looked at after a restart must be there.
 static void add_walls(struct column_list *list, struct dem *dem)
 {
     const int n = dem->n_wall, n_pair = dem->n_wall_pair;
@@ -170,6 +188,7 @@ static void add_walls(struct column_list *list, struct dem *dem)
 #undef PAIR
 }
 
+// Compensated sums have two numbers each: 3 times 2 of the translation, 2 of the angle.
 static void add_groups(struct column_list *list, struct dem *dem)
 {
     if (dem->n_driven == 0) return;
@@ -205,6 +224,7 @@ static void add_lanes(struct column_list *list, const struct dem *dem, const cha
     if (at.base) add_numbers(list, name, at, width, dem->pairs.n_pair)->in_lanes = true;
 }
 
+// `group_idle` too: a group that was idle is skipped only if its stored loads are 0.
 static void add_pairs(struct column_list *list, struct dem *dem)
 {
     const struct pair_list *pairs = &dem->pairs;
@@ -240,6 +260,7 @@ static void add_pairs(struct column_list *list, struct dem *dem)
 #undef PAIRS
 }
 
+// In an order that does not matter to files, where columns have names.
 struct column_list list_columns(struct dem *dem)
 {
     struct column_list list = {.count = 0};
