@@ -2,6 +2,14 @@
 // What the next equilibrium follows from, as named arrays, and back: grains, pairs with
 // their history, and counts. The factor and the contact solver only speed it up; but
 // rounding depends on them, so they are dropped when this is kept.
+//
+// A table is a list of members of a struct and their places in a row; the same table
+// serves both directions (copy_table), so these cannot differ. Whole numbers of pairs
+// go as one array of KINDS columns. Names in files are older than those in the code
+// ("joints" are contact pairs) and stay.
+//
+// The trap: a run that is kept drops its factor and goes on with a new one; a restored
+// run begins with a new one, too. If only one of them did, their digits would differ.
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"
@@ -18,11 +26,14 @@ static const double LARGEST = 1e150, MOST_COUNTED = 0x1p31;
 // From so many factors or loads on a checkpoint costs little: one factor more.
 enum { MANY_FACTORS = 16, MANY_LOADS = 256 };
 
+// Dropping the cache costs a factor, so a checkpoint waits until the cache has served
+// many loads.
 bool quasi_static_cache_is_old(const struct quasi_static *qs)
 {
     return qs->factors >= MANY_FACTORS || qs->n_load >= MANY_LOADS;
 }
 
+// The last increment is a guess for the next one, so it goes as well.
 void quasi_static_drop_cache(struct quasi_static *qs)
 {
     contact_solver_clear(qs->contacts);
@@ -68,6 +79,8 @@ static const struct part of_displacement[] = {{0, 6}}, of_vector[] = {{0, 3}},
 #define PARTS(part) part, sizeof(part) / sizeof *(part)
 enum { TABLES = 6 };
 
+// Large displacements have frames that turn, those at the start, and places of the last
+// search besides.
 static int list_tables(const struct quasi_static *qs, struct table table[TABLES])
 {
     const struct large_state *large = qs->large;
@@ -161,6 +174,7 @@ static void save_cracks(const struct quasi_static *qs, struct array_list *list)
 }
 
 // Contact bonds have an overlap of -infinity [make_contact_pairs.c]; no file holds it.
+// restore_points puts the infinity back.
 static void bound_numbers(double *number, int64_t count)
 {
     for (int64_t k = 0; k < count; k++)
@@ -192,6 +206,8 @@ struct array_list quasi_static_save(const struct quasi_static *qs)
 
 // ---- in -----------------------------------------------------------------------------
 
+// Whole numbers first: they say how many pairs there are. moments_left_out is of the
+// setup.
 static bool restore_kinds(struct quasi_static *qs, struct array_reader *reader)
 {
     const int64_t n = array_count(reader->list, "joint_kinds") / KINDS;
@@ -242,6 +258,8 @@ static bool restore_cracks(struct quasi_static *qs, struct array_reader *reader)
     return true;
 }
 
+// Numbers of events and which grain was last: they go into the summary only, but a
+// restored run must write the same.
 static bool restore_counted(struct quasi_static *qs, struct array_reader *reader)
 {
     const int64_t *counted =
@@ -266,6 +284,8 @@ static void restore_points(struct quasi_static *qs)
         if (qs->pair[j].overlap <= -LARGEST) qs->pair[j].overlap = -INFINITY;
 }
 
+// The iterate is that of the last equilibrium: roll_back_state makes it from what was
+// read.
 enum status quasi_static_restore(struct quasi_static *qs, const struct array_list *list,
                                  struct reason *reason)
 {

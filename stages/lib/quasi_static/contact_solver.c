@@ -7,6 +7,10 @@
 // W being `compliance` (Woodbury's identity; Delassus' operator of contact mechanics).
 // With K = L L^T a group of rows keeps L^-1 B^T; W is products of these, and
 // free_deformation their products with L^-1 r, so no row costs a whole solve.
+//
+// Newton's method with augmented springs (semismooth_newton.c) and block Gauss-Seidel
+// (gauss_seidel.c) both work on these small dense equations; K is factored elsewhere
+// and used for many of them.
 #include "contact_solver_internal.h"
 
 #include "basics/memory.h"
@@ -32,6 +36,7 @@ struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_
     return c;
 }
 
+// Capacities stay: the next rows use the same memory.
 void contact_solver_clear(struct contact_solver *solver)
 {
     for (int k = 0; k < solver->n_group; k++)
@@ -81,6 +86,8 @@ double contact_solver_work(const struct contact_solver *solver)
     return solver->work;
 }
 
+// Work that a new factor of K, with the pairs' present tangents, would make
+// unnecessary.
 bool contact_solver_is_costly(const struct contact_solver *c)
 {
     const double most = 1e10, most_factors = 100;
@@ -140,6 +147,7 @@ static void fill_compliance(struct contact_solver *c, int first)
             fill_between(c, &c->group[k], &c->group[l]);
 }
 
+// Once a pair is active it stays so until the rows are cleared.
 static struct active_pair *activate(struct contact_solver *c, int pair)
 {
     if (c->active_of[pair] < 0) {
@@ -156,6 +164,7 @@ struct batch {
     struct unit_load load[MOST_SOLVES][BATCH];
 };
 
+// Several groups at once: each row of the factor is then read once for all of them.
 static void add_batch(struct contact_solver *c, struct batch *batch)
 {
     const int before = c->n_group;
@@ -170,7 +179,8 @@ static void add_batch(struct contact_solver *c, struct batch *batch)
     *batch = (struct batch){0};
 }
 
-// For the next component of a pair.
+// For the next component of a pair. Components in their order, NORMAL first: a pair
+// with few rows has the first ones.
 static void add_row(struct contact_solver *c, struct batch *batch,
                     struct active_pair *active)
 {
@@ -185,6 +195,7 @@ static void add_row(struct contact_solver *c, struct batch *batch,
     if (batch->count[group] == BATCH) batch->groups++;
 }
 
+// False when there would be more than MOST rows; those that fit are there.
 bool contact_solver_add(struct contact_solver *c, int count,
                         const struct pair_rows *new)
 {
@@ -233,7 +244,9 @@ static void guess_deformation(struct contact_solver *c,
 }
 
 // Newton's method with augmented and with the contacts' own springs, by turns; from the
-// third round on after some sweeps of Gauss-Seidel.
+// third round on after some sweeps of Gauss-Seidel. The factored rows of the last
+// solution serve again while f is the same. ENOUGH is not below what rounding of the
+// free deformation leaves.
 bool contact_solver_solve(struct contact_solver *c,
                           const double (*deformation)[COMPONENTS],
                           const double (*guess)[COMPONENTS], double compliance_factor,
@@ -256,6 +269,7 @@ bool contact_solver_solve(struct contact_solver *c,
     return false;
 }
 
+// Off both: the right side in the factor's order, and the residual grain by grain.
 void contact_solver_subtract(const struct contact_solver *solver,
                              double compliance_factor, struct displacement *residual)
 {

@@ -5,6 +5,9 @@
 //     R^2/4, J = A R^2/2: normal k^n A, shear k^s A, torsion k^s J, bending k^n I
 //     [K 4.32-4.39]; contact bond: the springs of the contact, and against torsion and
 //     bending `rolling` times the shear stiffness times both arms.
+//
+// Pairs in this order: bonds as listed, then near grains without a bond, then grains
+// near the bottom wall. The order fixes that of all sums.
 #include "make_contact_pairs.h"
 
 #include "basics/memory.h"
@@ -12,6 +15,8 @@
 
 #include <stdlib.h>
 
+// The tangents are any two: from the axis of coordinates that is most across n, so that
+// the cross product is well away from 0.
 static void find_axes(struct contact_pair *pair, struct vector separation)
 {
     struct vector *axis = pair->axis;
@@ -49,6 +54,8 @@ static struct contact_pair in_contact(const struct contact_pair_setup *setup,
     return pair;
 }
 
+// The contact point lies halfway into the overlap [K 4.9]; arms are those of the start
+// also where an overlap does not push.
 struct contact_pair grain_pair(const struct contact_pair_setup *setup, int i, int j,
                                struct vector separation)
 {
@@ -96,6 +103,7 @@ static void bond_at_point(const struct contact_pair_setup *setup,
     pair->contact.state = CONTACT_OPEN;
 }
 
+// Stiffness per area times A, and I / A = R^2/4, J / A = R^2/2.
 static void bond_in_parallel(const struct contact_pair_setup *setup,
                              struct contact_pair *pair, int bond)
 {
@@ -143,6 +151,7 @@ static void add_bonds(const struct contact_pair_setup *setup, struct pair_list *
     }
 }
 
+// Bonded grains are pairs already. Both lists are sorted alike.
 static void add_near(const struct contact_pair_setup *setup, struct pair_list *list)
 {
     const struct packing *packing = setup->packing;
@@ -163,6 +172,7 @@ static void add_near(const struct contact_pair_setup *setup, struct pair_list *l
     free(bonded);
 }
 
+// The wall is the lower side of the box along z, as for the engine in time steps.
 static void add_wall(const struct contact_pair_setup *setup, struct pair_list *list)
 {
     const struct packing *packing = setup->packing;
