@@ -40,8 +40,7 @@ static double integral_to(const struct time_table *table, double time)
     return sum + f[n - 1] * (time - t[n - 1]);
 }
 
-// Mean factor over SPAN behind TIME, s.
-static double mean_factor(const struct time_table *table, double time, double span)
+double mean_factor(const struct time_table *table, double time, double span)
 {
     if (!table || table->times.count == 0) return 1;
     return (integral_to(table, time + span) - integral_to(table, time)) / span;

@@ -16,6 +16,9 @@ bool is_controlled(const struct simulate_parameters *parameters,
 // the same cycles to give the same bytes.
 enum { CONTROL_EVERY = 16 };
 
+// Mean of the factors of TABLE over SPAN behind TIME, s; 1 without a table.
+double mean_factor(const struct time_table *table, double time, double span);
+
 // Sets motions and servos for TIME, s, and strains the box for CONTROL_EVERY cycles.
 // Call it when dem_cycle is a multiple of CONTROL_EVERY, before these cycles run. TIME
 // is that of the beginning of the span, dem_time(DEM). It cannot fail: make_scene has

@@ -35,6 +35,8 @@ static const struct stage stage = {
 static struct packing read_packing(const struct artifact *input)
 {
     struct packing packing = artifact_get_packing(input);
+    if (packing.n_particle == 0)
+        die(STATUS_BAD_DATA, "%s: /particles: has no grains", input_name(input->path));
     for (int i = 0; i < packing.n_particle; i++)
         if (is_auxiliary(&packing, i))
             die(STATUS_BAD_DATA,
@@ -104,13 +106,14 @@ static void warn_of_servos(const struct scene *scene, const struct outcome *outc
         const struct dem_wall *wall = &scene->wall[w];
         const struct scene_wall *more = &scene->wall_more[w];
         const bool pressure = !isnan(more->servo_pressure);
-        if (more->motion && more->motion->times.count > 0) continue;
-        const double wanted = pressure
-                                  ? more->servo_pressure * servo_area(scene, dem, w)
-                                  : wall->servo_force;
+        const double span = CONTROL_EVERY * dem_time_step(dem);
+        const double factor = mean_factor(more->motion, dem_time(dem) - span, span);
+        const double wanted =
+            factor * (pressure ? more->servo_pressure * servo_area(scene, dem, w)
+                               : wall->servo_force);
         if (!(wanted > 0)) continue;
         const struct dem_wall_state now = dem_wall_state(dem, w);
-        const double has = -dot(now.force, wall->normal) / norm(wall->normal);
+        const double has = 0 - dot(now.force, wall->normal) / norm(wall->normal);
         if (fabs(has - wanted) <= near * wanted) continue;
         report("walls.%s: ends with a force of %.4g N, its servo is to reach %.4g N: "
                "grains give way, or servo.largest_speed or the duration is too small",

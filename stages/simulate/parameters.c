@@ -268,8 +268,8 @@ const struct parameter simulate_table[] = {
      .text = "law=hertz: the stability limit is that of contacts with this overlap, in "
              "mean radii"},
     {"largest_overlap", PARAMETER_NUMBER, "1", "0.5", AT(largest_overlap), ABOVE(0),
-     .text = "in mean radii: when two grains overlap by more, the run ends with status "
-             "3"},
+     .text = "in mean radii: when two grains, or a grain and a wall, overlap by more, "
+             "the run ends with status 3"},
     {"record.every", PARAMETER_NUMBER, "s", "null", AT(record_every), ABOVE(0),
      .text = "between the rows of /history; null: duration/200"},
     {"record.snapshots_every", PARAMETER_NUMBER, "s", "null", AT(snapshots_every),

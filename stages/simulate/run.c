@@ -16,12 +16,18 @@
 #include "basics/memory.h"
 #include "control.h"
 #include "dem/keep.h"
+#include "geometry/porosity.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
-// Cycles between two looks at the largest overlap.
-enum { LOOK_EVERY = 1024 };
+// Cycles between two looks at the largest overlap: so many, fewer where a wall moves
+// more than the share of a mean radius in them.
+enum { LOOK_MOST = 1024, LOOK_LEAST = 16 };
+static const double LOOK_SHARE = 0.1;
+// No wall moves more than this share of a mean radius in a cycle, as no grain does.
+static const double LARGEST_MOVE = 0.1;
 static const char streams[] = "motion";
 
 // A run on its way.
@@ -32,6 +38,7 @@ struct run {
     bool controlled;
     double record_every, snapshots_every; // s
     int64_t asked;                        // cycles between questions to the keeper
+    int64_t look_every;                   // cycles between looks at the overlaps
 };
 
 void outcome_free(struct outcome *outcome)
@@ -156,24 +163,42 @@ static int64_t next_cycles(const struct run *run)
     int64_t cycles = least(run->asked, cycles_to(run, run->parameters->duration));
     cycles = least(cycles, cycles_to(run, next_sums(run)));
     cycles = least(cycles, cycles_to(run, next_snapshot(run)));
-    cycles = least(cycles, cycles_to_multiple(run, LOOK_EVERY));
+    cycles = least(cycles, cycles_to_multiple(run, run->look_every));
     const bool looks = run->controlled || !isnan(run->parameters->stop_ratio);
     return looks ? least(cycles, cycles_to_multiple(run, CONTROL_EVERY)) : cycles;
+}
+
+// Pa, over the room between planes, which follows walls as they close in.
+static double mean_pressure(const struct run *run, const struct dem_census *census)
+{
+    struct vector lower, upper;
+    dem_box(dem_of(run), &lower, &upper);
+    const struct vector edge = subtract(upper, lower);
+    const double between = room(run->scene, dem_of(run)),
+                 box = edge.x * edge.y * edge.z;
+    const double sum =
+        census->stress[0][0] + census->stress[1][1] + census->stress[2][2];
+    return sum / 3 * (between > 0 ? box / between : 1);
 }
 
 static enum status check_overlap(const struct run *run, struct reason *reason)
 {
     const struct dem_census census = dem_census(dem_of(run));
-    if (!(census.largest_overlap > run->parameters->largest_overlap)) return STATUS_OK;
-    const double pressure =
-        (census.stress[0][0] + census.stress[1][1] + census.stress[2][2]) / 3;
+    const double most = run->parameters->largest_overlap;
+    const bool wall = census.wall_overlap > fmax(most, census.largest_overlap);
+    if (!wall && !(census.largest_overlap > most)) return STATUS_OK;
+    char what[300] = "two grains overlap";
+    if (wall)
+        snprintf(what, sizeof what, "wall %s, pushed with %.4g N, and a grain overlap",
+                 run->scene->wall_more[census.deepest_wall].name,
+                 norm(dem_wall_state(dem_of(run), census.deepest_wall).force));
     return refuse(
         reason, STATUS_NOT_CONVERGED,
-        "at %.4g s two grains overlap by %.3g mean radii, above "
-        "largest_overlap=%g, under a mean pressure of %.4g Pa: stiffer grains, "
-        "or walls that close in less",
-        dem_time(dem_of(run)), census.largest_overlap, run->parameters->largest_overlap,
-        pressure);
+        "at %.4g s %s by %.3g mean radii, above largest_overlap=%g, under a "
+        "mean pressure of %.4g Pa: stiffer grains, or walls that close in less",
+        dem_time(dem_of(run)), what,
+        wall ? census.wall_overlap : census.largest_overlap, most,
+        mean_pressure(run, &census));
 }
 
 static enum status advance(struct run *run, struct reason *reason)
@@ -185,7 +210,7 @@ static enum status advance(struct run *run, struct reason *reason)
     enum status status = dem_run(dem, next_cycles(run), &cause);
     if (status)
         return refuse(reason, status, "at %.4g s: %.400s", dem_time(dem), cause.text);
-    if (dem_cycle(dem) % LOOK_EVERY == 0) status = check_overlap(run, reason);
+    if (dem_cycle(dem) % run->look_every == 0) status = check_overlap(run, reason);
     return status;
 }
 
@@ -220,6 +245,54 @@ static double interval(double given, double duration, double count)
 {
     if (!isnan(given)) return given;
     return duration > 0 ? duration / count : 1;
+}
+
+// m/s, of wall W with the largest of its factors, servo included.
+static double largest_speed(const struct scene *scene, int w)
+{
+    const struct dem_wall *wall = &scene->wall[w];
+    const struct time_table *motion = scene->wall_more[w].motion;
+    double factor = motion && motion->times.count > 0 ? 0 : 1;
+    for (int k = 0; motion && k < motion->factors.count; k++)
+        factor = fmax(factor, fabs(motion->factors.value[k]));
+    return factor * norm(wall->velocity) + wall->servo_largest_speed;
+}
+
+// Finds how often to look at the overlaps. Fast walls pass through grains in a cycle.
+static enum status check_speeds(struct run *run, struct reason *reason)
+{
+    const struct scene *scene = run->scene;
+    const struct packing *packing = scene->setup.packing;
+    const double step = dem_time_step(dem_of(run));
+    const double radius = mean_radius(packing);
+    run->look_every = LOOK_MOST;
+    for (int w = 0; w < scene->setup.n_wall; w++) {
+        const double move = largest_speed(scene, w) * step / radius;
+        if (move > LARGEST_MOVE)
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "simulate.walls.%s: moves by %.3g mean radii in a time step of "
+                "%.4g s, above %g: slower walls, or a smaller time step",
+                scene->wall_more[w].name, move, step, LARGEST_MOVE);
+        while (run->look_every > LOOK_LEAST &&
+               (double)run->look_every * move > LOOK_SHARE)
+            run->look_every /= 2;
+    }
+    return STATUS_OK;
+}
+
+static enum status check_servos(const struct run *run, struct reason *reason)
+{
+    const struct scene *scene = run->scene;
+    for (int w = 0; w < scene->setup.n_wall; w++) {
+        if (isnan(scene->wall_more[w].servo_pressure)) continue;
+        if (servo_area(scene, dem_of(run), w) > 0) continue;
+        return refuse(reason, STATUS_BAD_DATA,
+                      "simulate.walls.%s.servo.area: must be given: no planes or sides "
+                      "of the box bound a rectangle across its normal",
+                      scene->wall_more[w].name);
+    }
+    return STATUS_OK;
 }
 
 // A grain that begins deep in a wall would be shot out of it. Only where the run
@@ -261,6 +334,9 @@ static enum status begin(struct run *run, const struct vector *force, int thread
     struct scene *scene = run->scene;
     scene->setup.threads = threads;
     enum status status = dem_create(&run->outcome->dem, &scene->setup, reason);
+    if (status) return status;
+    status = check_speeds(run, reason);
+    if (!status) status = check_servos(run, reason);
     if (status) return status;
     set_velocities(run);
     if (force) dem_set_force(dem_of(run), force);

@@ -328,7 +328,9 @@ struct dem_momentum dem_momentum(const struct dem *dem);
 // O(pairs).
 struct dem_census {
     int contacts;                         // touching or bonded
-    double mean_overlap, largest_overlap; // over the mean radius
+    double mean_overlap, largest_overlap; // of grains, over the mean radius
+    double wall_overlap;                  // largest of grains with walls, likewise
+    int deepest_wall;                     // the wall where it is, or -1
     double stress[3][3];                  // Pa, compression > 0, over the volume of the
                                           // box; of contacts, bonds and liquid bridges
 };

@@ -218,10 +218,17 @@ static void count_contact(struct dem_census *census, double overlap)
     census->largest_overlap = fmax(census->largest_overlap, overlap);
 }
 
+static void count_wall(struct dem_census *census, int wall, double overlap)
+{
+    if (!(overlap > census->wall_overlap)) return;
+    census->wall_overlap = overlap;
+    census->deepest_wall = wall;
+}
+
 // Bridges across a gap count in the stress, not as contacts.
 struct dem_census dem_census(const struct dem *dem)
 {
-    struct dem_census census = {.contacts = 0};
+    struct dem_census census = {.deepest_wall = -1};
     double volume = 1;
     for (int axis = 0; axis < 3; axis++)
         volume *= dem->box_upper[axis] - dem->box_lower[axis];
@@ -243,6 +250,7 @@ struct dem_census dem_census(const struct dem *dem)
         const struct wall_pair *pair = &dem->wall_pair[p];
         const struct wall_geometry geometry =
             wall_geometry(dem, pair->particle, pair->wall, places_ahead(dem));
+        count_wall(&census, pair->wall, geometry.overlap);
         for (int k = 0; k < 9; k++)
             census.stress[k / 3][k % 3] -= unit * geometry.arm *
                                            component(geometry.normal, k / 3) *
