@@ -304,7 +304,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-BENCH_STUDIES := $(addprefix bench-,dem impact simulate walls bridge viscous replay dry network flow report)
+BENCH_STUDIES := $(addprefix bench-,dem impact simulate simulate-speed walls bridge viscous replay dry network flow report)
 .PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) speed-vs-error
 check: all $(C_TESTS) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -328,7 +328,8 @@ $(BENCH_STUDIES): bench-%: all $(BENCHES)
 	@tests/bench/$*
 bench-dem: ## the discrete elements beside LAMMPS, LIGGGHTS and Yade (an hour)
 bench-impact: ## error of the contact laws against cost, over time steps
-bench-simulate: ## the program simulate beside LIGGGHTS and Yade: trajectories, averages, speed
+bench-simulate: ## the program simulate beside LIGGGHTS and Yade: trajectories and averages
+bench-simulate-speed: ## its speed beside LIGGGHTS and Yade, dry and wet, and in the shear cell
 bench-walls: ## the tessellation in a cylinder and of grains on a sphere, next to voro++
 bench-bridge: ## error of the capillary bridge models against cost
 bench-viscous: ## time to dryness with viscous liquid, next to none
