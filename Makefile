@@ -110,7 +110,7 @@ tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
 support_for = $(call object,$(wildcard tests/$1/support_*.c))
 test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
 C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
-BENCHES := $(call test_programs,bench)
+BENCHES := $(call test_programs,bench) $(call test_programs,bench/void)
 SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
 
 quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
@@ -173,7 +173,7 @@ $(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) $(CORES) $
 	$$(call quiet,LINK,tests/$1/$$*)mkdir -p $$(@D) \
 	&& $(CC) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
 endef
-$(foreach d,unit physics bench,$(eval $(call test_rules,$d)))
+$(foreach d,unit physics bench bench/void,$(eval $(call test_rules,$d)))
 
 .SECONDARY:
 include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,*/* */*/* */*/*/*)))
@@ -344,7 +344,7 @@ speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minu
 # --- house ----------------------------------------------------------------------------
 
 C_SOURCES := $(wildcard $(foreach d,* */* lib/*/*,stages/$d/*.[ch] stages/$d/*.cpp) tests/*.h \
-	tests/*/*.[ch])
+	tests/*/*.[ch] tests/bench/void/*.[ch])
 
 .PHONY: format tidy help
 format: ## format the C and C++ sources
