@@ -168,8 +168,8 @@ $(CORES): $(call object,$(core_sources)) $(BUILD)/sources
 	$(archive)
 
 define test_rules
-$(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) $(CORES) $(LIBRARY) \
-		$(BUILD)/sources
+$(call test_programs,$1): $(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) \
+		$(CORES) $(LIBRARY) $(BUILD)/sources
 	$$(call quiet,LINK,tests/$1/$$*)mkdir -p $$(@D) \
 	&& $(CC) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
 endef
