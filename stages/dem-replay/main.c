@@ -66,7 +66,8 @@ static void warn_if_unheld(const struct packing *packing, const uint8_t *held)
             supported, n);
 }
 
-// The caller frees what it gives to SETTINGS.
+// The caller frees what it gives to SETTINGS. Grains are held by PARAMETERS only with
+// support=fixed; otherwise the list is empty.
 static void choose_grains(const struct replay_parameters *parameters,
                           struct packing *packing, struct replay_settings *settings,
                           bool quiet)
@@ -97,7 +98,8 @@ static void choose_grains(const struct replay_parameters *parameters,
     if (!quiet) report("support=fixed holds no grain: none touches held.walls");
 }
 
-// Masses are cubes of radii, moments of inertia fifth powers.
+// Masses are cubes of radii, moments of inertia fifth powers. m ~ R^3 and I ~ R^5:
+// within these bounds both are numbers.
 static void check_sizes(const struct packing *packing, const char *path)
 {
     static const double smallest = 1e-60, largest = 1e60; // m
@@ -123,7 +125,9 @@ static struct load read_load(const struct artifact *input)
     return load;
 }
 
-// What an earlier replay left, if one was named: the engine, and its PACKING.
+// What an earlier replay left, if one was named: the engine, and its PACKING. PACKING
+// becomes that of the earlier response, whose grains have moved and whose bonds are
+// numbered as it knew them.
 static struct artifact *open_earlier(const struct invocation *invocation,
                                      struct packing *packing, struct array_list *engine)
 {
@@ -143,6 +147,7 @@ static struct artifact *open_earlier(const struct invocation *invocation,
     return earlier;
 }
 
+// In the order in which the inputs were named.
 static json_t *digests(const struct artifact *input, const struct artifact *earlier)
 {
     json_t *inputs = one_input(input);
@@ -187,6 +192,7 @@ static const char *describe_loose(const struct replay_settings *settings)
                : "loose grains: their loads go on\n";
 }
 
+// The times of the first drying period go along, for crackstats.
 static void write_response(const struct packing *packing, const struct load *load,
                            const struct replay_settings *settings,
                            const struct response *response,
@@ -232,6 +238,7 @@ static void write_response(const struct packing *packing, const struct load *loa
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
+// Half of the loads, because a few that are slow to settle change little.
 static void warn_if_restless(const struct load *load,
                              const struct replay_settings *settings,
                              const struct response *response)
@@ -254,6 +261,7 @@ struct far_grains {
     double moved;
 };
 
+// Over all snapshots, since a grain may come back.
 static struct far_grains find_far_grains(const struct packing *packing,
                                          const struct response *response)
 {

@@ -2,6 +2,9 @@
 // The parameters, and what follows from them: the kind of bonds, the liquid of bridges,
 // and the engine. With engine=auto equilibria are taken only where each load has one of
 // its own, found quickly (suits_equilibria); everything else runs by cycles.
+//
+// Defaults are K's aggregate [K Table 5.1]: grains of 250 nm. warn_of_defaults tells
+// those who have other grains.
 #include "parameters.h"
 
 #include "replay_engine.h"
@@ -202,7 +205,8 @@ static void check_snapshots(const struct number_list *snapshots)
 }
 
 // Strengths of parallel bonds are stresses, those of contact bonds forces. A contact
-// bond without a given strength never breaks.
+// bond without a given strength never breaks. beta = moment_contribution; the engine
+// asks for what is left out, so that a setup of zeros counts moments whole.
 static void choose_bonds(const struct replay_parameters *parameters,
                          struct replay_settings *settings)
 {
@@ -236,7 +240,8 @@ const char *complete_bridges(struct replay_parameters *parameters,
 }
 
 // Without friction each load has one equilibrium, which does not depend on the loads
-// before it and is found quickly (docs/equilibrium.md).
+// before it and is found quickly (docs/equilibrium.md). Up to MOST_GRAINS only: the
+// cost of a factor grows faster than that of a time step (docs/engines.md).
 static bool suits_equilibria(const struct replay_settings *settings,
                              const struct packing *packing)
 {
@@ -247,6 +252,7 @@ static bool suits_equilibria(const struct replay_settings *settings,
            packing->n_particle <= MOST_GRAINS;
 }
 
+// For the provenance: which of the reasons it was.
 static const char *why_cycles(const struct replay_settings *settings)
 {
     return settings->material.friction > 0

@@ -146,6 +146,8 @@ void save_load(struct array_list *list, const struct vector *force, int n_partic
     add_array(list, "taken_off", ARRAY_FLOAT64, 6, &taken_off);
 }
 
+// Equilibria are found again from all loads so far, in their order: those of earlier
+// replays, or the weight alone, then these.
 struct array_list save_loads(const struct array_list *earlier,
                              const struct vector *weight, const struct load *load,
                              const struct packing *packing)
@@ -183,6 +185,7 @@ enum status restore_load(const struct array_list *list, int n_particle,
     return STATUS_OK;
 }
 
+// The two engines keep different things, and each knows its own by this array.
 bool saved_by_equilibria(const struct array_list *list)
 {
     return find_array(list->array, list->count, loads_name) != NULL;
@@ -207,6 +210,8 @@ const struct vector *saved_loads(const struct array_list *list,
                       LARGEST);
 }
 
+// STEP is the load at work when the state was kept; BEGAN the cycle at which it began.
+// All arrays have a number for each load, also for those to come.
 static enum status restore_history(struct response *response, int first_step,
                                    int n_time, int64_t cycle,
                                    struct array_reader *reader,
@@ -236,6 +241,7 @@ static enum status restore_history(struct response *response, int first_step,
     return STATUS_OK;
 }
 
+// An array of no numbers stands for NAN, which no file holds.
 enum status restore_weight(struct response *response, int n_crack,
                            const struct array_list *list, struct reason *reason)
 {
@@ -278,6 +284,7 @@ static enum status restore_cracks(struct response *response, int n_time,
     return STATUS_OK;
 }
 
+// Times and saturations are not kept: they are those of the loads.
 static enum status restore_snapshots(struct response *response,
                                      const struct packing *packing,
                                      const struct load *load, int most,
@@ -322,7 +329,8 @@ static int64_t first_unordered(const int32_t (*particle)[2], int64_t n)
     return k;
 }
 
-// The contacts of all snapshots, N of them; NULL with the reason.
+// The contacts of all snapshots, N of them; NULL with the reason. Every index is
+// checked before it is used: a damaged file must not lead outside of an array.
 static struct dem_contact *read_contacts(const struct packing *packing, int64_t n,
                                          struct array_reader *reader)
 {
@@ -362,6 +370,7 @@ static struct dem_contact *read_contacts(const struct packing *packing, int64_t 
     return contact;
 }
 
+// Contacts of all snapshots lie one behind the other; OF_EACH says how many each has.
 static enum status restore_contacts(struct response *response,
                                     const struct packing *packing,
                                     struct array_reader *reader)
@@ -386,6 +395,8 @@ static enum status restore_contacts(struct response *response,
                   (long long)sum);
 }
 
+// In this order because each needs the one before: loads for the steps of cracks,
+// snapshots for their contacts.
 enum status restore_response(struct response *response, const struct packing *packing,
                              const struct load *load, int most_snapshots,
                              const struct engine_past *past,

@@ -25,6 +25,8 @@ static double gravity_of_forces(const struct artifact *input)
                : 0;
 }
 
+// A gravity that comes from the forces is dropped quietly where the body is free, one
+// that the user gave is refused.
 static double choose_gravity(const struct replay_parameters *parameters,
                              const struct packing *packing, double of_forces)
 {
@@ -43,6 +45,8 @@ static double choose_gravity(const struct replay_parameters *parameters,
     return is_free ? 0 : gravity;
 }
 
+// The suction that weights are compared with has the factor force_scale in it, as the
+// forces have.
 struct taken_weight take_weight(const struct artifact *input,
                                 const struct replay_parameters *parameters,
                                 const struct packing *packing, struct load *load,
@@ -102,6 +106,7 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
                response->weight_unbalanced_ratio);
 }
 
+// The value, not whether it was given: who writes the default down means it as little.
 static bool is_default(const struct replay_parameters *parameters, const char *key)
 {
     const struct parameter *row = replay_table;
@@ -112,6 +117,8 @@ static bool is_default(const struct replay_parameters *parameters, const char *k
     return value == strtod(row->fallback, NULL);
 }
 
+// A tenth to ten times the radius: within that the defaults are at least of the right
+// order.
 void warn_of_defaults(const struct replay_parameters *parameters,
                       const struct packing *packing)
 {
@@ -147,6 +154,7 @@ const char *describe_weight(const struct taken_weight *weight, char text[200])
     return text;
 }
 
+// A bond number that is not known is left out.
 void put_weight(struct artifact *artifact, const struct taken_weight *weight,
                 const struct response *response)
 {

@@ -108,7 +108,8 @@ static struct contact_list all_contacts(const struct packing *packing,
     return list;
 }
 
-// The row of LIST that a contact has, or -1: with a wall.
+// The row of LIST that a contact has, or -1: with a wall. By bisection: the list is
+// sorted.
 static int row_of(const struct contact_list *list, const struct dem_contact *contact)
 {
     if (!list->count) return -1;
@@ -124,6 +125,8 @@ struct contact_tables {
     double *bridge_volume, *bridge_force, *bridge_gap;
 };
 
+// A table of all contacts of any snapshot, so that a contact has one column in all of
+// them.
 static struct contact_tables tables_of(const struct response *response,
                                        const struct contact_list *list)
 {
@@ -171,6 +174,7 @@ static void put_contacts(struct artifact *artifact, const struct response *respo
 
 // ---- snapshots ----------------------------------------------------------------------
 
+// One array for all snapshots, (n_snapshot, n), as datasets are.
 static void put_snapshots(struct artifact *artifact, const struct packing *packing,
                           const struct response *response)
 {
@@ -202,6 +206,7 @@ static void put_snapshots(struct artifact *artifact, const struct packing *packi
     free(intact);
 }
 
+// Of snapshots only; from the places where grains began.
 double largest_displacement(const struct packing *packing,
                             const struct response *response)
 {
