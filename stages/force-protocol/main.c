@@ -5,6 +5,13 @@
 // and the weight of the liquid; find the sectors around throats, and from them what
 // each throat's load does to each grain, and the rings (find_action); choose the times
 // and sum the loads at each (find_protocol); leave out auxiliary grains; write.
+//
+// For a liquid with surface tension gamma and contact angle theta
+//
+//     meniscus     = 2 gamma cos(theta)             N/m: over r it is a suction
+//     uniform      = meniscus / mean throat radius  Pa: of pressure=uniform
+//     contact_line = gamma sin(theta)               N/m, along the grain [K 3.14]
+//     weight       = gravity times liquid density   N/m3
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "auxiliary.h"
@@ -98,7 +105,8 @@ static const struct stage stage = {
     .parameters = table};
 
 // Takes from the drying each property of the liquid that was not given. DIFFERENCE says
-// which given ones are not those of the drying.
+// which given ones are not those of the drying. Only the tension has no default: an
+// angle of 0 is what a drying without one means.
 static void complete_liquid(struct force_parameters *parameters,
                             const struct artifact *input, char *difference, size_t size)
 {
@@ -116,6 +124,7 @@ static void complete_liquid(struct force_parameters *parameters,
     liquid_differs(&told, &has, "the drying", difference, size);
 }
 
+// Times are shares of the end: it must not vanish when divided by the number of steps.
 static void check_end(const struct drying_record *record, double steps,
                       const char *path)
 {
@@ -125,6 +134,7 @@ static void check_end(const struct drying_record *record, double steps,
             input_name(path), end);
 }
 
+// Plain mean over the throats that may hold liquid, as K has it.
 static double mean_radius(const struct network *network, const char *path)
 {
     double sum = 0;
@@ -140,7 +150,8 @@ static double mean_radius(const struct network *network, const char *path)
     return sum / count;
 }
 
-// Without a contact angle the contact line pulls along the grain only [K 3.6].
+// Without a contact angle the contact line pulls along the grain only [K 3.6]. Checked
+// before any force is made: an overflow there would be a force of infinity on a grain.
 static struct suction_law find_law(const struct network *network,
                                    const struct force_parameters *parameters,
                                    const char *path)
@@ -160,7 +171,8 @@ static struct suction_law find_law(const struct network *network,
     return law;
 }
 
-// The gravity with which the drying was computed; 0 if it does not say.
+// The gravity with which the drying was computed; 0 if it does not say. From its
+// parameters, since the artifact has no number of its own for it.
 static double gravity_of_drying(const struct artifact *input)
 {
     char *text = artifact_get_text(input, "parameters");
@@ -171,6 +183,8 @@ static double gravity_of_drying(const struct artifact *input)
     return gravity > 0 ? gravity : 0;
 }
 
+// The density follows from the mass of liquid and the volume it filled, so that it is
+// that of the drying.
 static void find_weight(const struct network *network,
                         const struct liquid_record *record,
                         struct force_parameters *parameters,
@@ -184,6 +198,9 @@ static void find_weight(const struct network *network,
     law->weight = parameters->gravity * liquid_density(network, &record->drying, mass);
 }
 
+// Balancing corrects the suction's patches alone: contact lines and weights have no
+// form to choose. Patches in an open wall are dropped after balancing, so that a throat
+// there pulls on no grain at all.
 static enum status find_action(struct sectors *sectors,
                                const struct force_parameters *parameters,
                                double suction, unsigned open_walls,
@@ -225,6 +242,7 @@ static enum status find_action(struct sectors *sectors,
     return status;
 }
 
+// Before anything large is allocated.
 static void refuse_size(const struct force_parameters *parameters, double times,
                         double bytes, double grains)
 {
@@ -237,6 +255,7 @@ static void refuse_size(const struct force_parameters *parameters, double times,
         parameters->most_bytes);
 }
 
+// Three doubles a grain and time for the force, one more for the mass of the liquid.
 static struct protocol find_protocol(const struct process *process,
                                      const struct force_parameters *parameters)
 {
@@ -262,6 +281,8 @@ struct findings {
     double field_error; // NAN: there is no field, or no more than two snapshots of it
 };
 
+// The interpolation error is found at times between those chosen, where the forces are
+// summed once more.
 static struct findings examine(const struct process *process,
                                const struct protocol *protocol, const char *path)
 {
@@ -280,6 +301,7 @@ static struct findings examine(const struct process *process,
     return found;
 }
 
+// Changes and errors over the largest force, so that they are numbers without a unit.
 static void put_summary(struct artifact *artifact, const struct process *process,
                         const struct findings *found, double gravity,
                         const struct artifact *input)
@@ -301,6 +323,7 @@ static void put_summary(struct artifact *artifact, const struct process *process
                         artifact_get_number(input, "/summary/first_period_end_time"));
 }
 
+// In the order of the choices in the table.
 static void describe(const struct force_parameters *parameters, const char *difference,
                      const struct pendular_rings *rings, char *text, size_t size)
 {
@@ -346,6 +369,7 @@ static void describe(const struct force_parameters *parameters, const char *diff
              left, weight);
 }
 
+// LIQUID is what the forces were computed with, for the stages behind.
 static void write_forces(const struct protocol *protocol, const struct process *process,
                          const struct findings *found, double gravity,
                          const struct liquid_properties *liquid, const char *model,
