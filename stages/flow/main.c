@@ -134,7 +134,9 @@ static struct vector vector_of(const double x[3])
     return (struct vector){x[0], x[1], x[2]};
 }
 
-// NULL when neither box nor grains move.
+// NULL when neither box nor grains move. Velocities of the packing, where it has them;
+// else grains move with the strain of the box, v = rate x. Scaled by the unit of
+// length; (n_pore) volume a time.
 static double *find_opening(const struct artifact *input,
                             const struct flow_parameters *parameters,
                             const struct computation *flow)
@@ -158,7 +160,8 @@ static double *find_opening(const struct artifact *input,
     return opening;
 }
 
-// A pore that opens draws fluid in.
+// A pore that opens draws fluid in. Scaled by the viscosity, because pressures are
+// solved for a viscosity of 1.
 static double *sources_of(const struct computation *flow, double viscosity)
 {
     if (!flow->opening) return NULL;
@@ -168,6 +171,8 @@ static double *sources_of(const struct computation *flow, double viscosity)
     return source;
 }
 
+// Column j of the tensor is the mean velocity under a drop of 1 Pa along j. Nothing
+// moves in these flows, whatever moves in the first one.
 static enum status find_columns(struct computation *flow, const struct solving *solving,
                                 struct reason *reason)
 {
@@ -191,6 +196,7 @@ static enum status find_columns(struct computation *flow, const struct solving *
     return STATUS_OK;
 }
 
+// Pore stresses are averages of a Stokes flow between resting grains.
 static enum status compute(const struct artifact *input,
                            const struct flow_parameters *parameters,
                            struct computation *flow, struct reason *reason)
@@ -230,7 +236,8 @@ static enum status compute(const struct artifact *input,
     return parameters->tensor ? find_columns(flow, &solving, reason) : STATUS_OK;
 }
 
-// mu U / (drop over the length) along the drop, m2.
+// mu U / (drop over the length) along the drop, m2. NAN where no drop along an axis was
+// imposed, or where grains that move drive flow as well.
 static double permeability_of(const struct computation *flow,
                               const struct imposed *imposed)
 {
@@ -240,7 +247,7 @@ static double permeability_of(const struct computation *flow,
            flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
 }
 
-// Share of the box along AXIS that the grains reach over.
+// Share of the box along AXIS that the grains reach over. All of a box that repeats.
 static double bed_share(const struct packing *packing, int axis)
 {
     const double lower = component(packing->lower, axis);

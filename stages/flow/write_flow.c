@@ -18,6 +18,7 @@ static struct vector buoyancy(const struct flow *flow, int i)
     return scale(-4 * M_PI / 3 * radius * radius * radius, flow->weight);
 }
 
+// From Pa unit^2.
 static struct vector newtons(const struct flow *flow, struct vector force)
 {
     return scale(flow->grains->unit * flow->grains->unit, force);
@@ -35,6 +36,8 @@ static double cube(double x)
     return x * x * x;
 }
 
+// Cells of one pore share its pressure. Pores come in the order of their first cells:
+// `next` is the first that was not met.
 static void put_pores(struct artifact *artifact, const struct flow *flow)
 {
     const struct cells *cells = flow->cells;
@@ -63,7 +66,8 @@ static void put_pores(struct artifact *artifact, const struct flow *flow)
     free(value);
 }
 
-// Less the pressure.
+// Less the pressure. Row and column of the six numbers of a symmetric tensor, diagonal
+// first. Tension is positive here: the pressure is subtracted.
 static void put_together(double stress[3][3], const double viscous[6], double pressure)
 {
     static const int row[6] = {0, 1, 2, 1, 2, 0}, column[6] = {0, 1, 2, 2, 0, 1};
@@ -94,6 +98,8 @@ static void put_stress(struct artifact *artifact, const struct flow *flow)
     free(stress);
 }
 
+// The flux is positive from the first pore to the second. Where grains cover a facet
+// its fluid area may be negative; 0 is written.
 static void put_throat_numbers(struct artifact *artifact, const struct flow *flow)
 {
     const struct throats *throats = flow->throats;
@@ -119,6 +125,7 @@ static void put_throat_numbers(struct artifact *artifact, const struct flow *flo
     free(area);
 }
 
+// Also as a view for ParaView, with pores as points and throats as lines.
 static void put_throats(struct artifact *artifact, const struct flow *flow)
 {
     const struct throats *throats = flow->throats;
@@ -161,7 +168,8 @@ static void put_grains(struct artifact *artifact, const struct flow *flow)
     free(force);
 }
 
-// Returns what flows in.
+// Returns what flows in. Inflow is positive into the box; what flows in is the sum of
+// the positive ones.
 static double put_walls(struct artifact *artifact, const struct flow *flow)
 {
     struct vector viscous[WALL_COUNT], pressure[WALL_COUNT];
@@ -179,6 +187,7 @@ static double put_walls(struct artifact *artifact, const struct flow *flow)
     return sum;
 }
 
+// Columns become the second index: tensor[i][j] is the flow along i for a drop along j.
 static void put_permeability(struct artifact *artifact, const struct flow *flow)
 {
     if (!isnan(flow->permeability)) {
@@ -211,6 +220,8 @@ void put_flow(struct artifact *artifact, const struct flow *flow)
     artifact_put_number(artifact, "/summary/pockets", flow->pressures->n_pocket);
 }
 
+// A forces artifact without liquid: saturation 1, suction 0. The forces grow linearly
+// from 0, so that a replay can follow them.
 void put_forces(struct artifact *artifact, const struct flow *flow, int steps)
 {
     const int n = flow->packing->n_particle;
