@@ -40,6 +40,8 @@ struct conditions conditions_unset(void)
     return unset;
 }
 
+// The section is checked by its own table first, so that a typing error there is found
+// even if no stage needs the key.
 void conditions_share(json_t *section, const struct parameter *table,
                       const json_t *conditions, const char *where)
 {
@@ -55,12 +57,15 @@ static bool is_named(const struct conditions *conditions)
     return conditions->fluid != FLUID_OTHER;
 }
 
+// NAN where it is not known, of this liquid or at this temperature.
 static double own_value(const struct conditions *conditions, int property)
 {
     return fluid_value((enum fluid)conditions->fluid, (enum fluid_property)property,
                        conditions->temperature, conditions->gas_pressure);
 }
 
+// Three reasons, and what to do about each: no liquid named, a property that is not
+// tabulated, a temperature outside of the table.
 static enum status refuse_unknown(const struct conditions *conditions, int property,
                                   struct reason *reason)
 {
@@ -83,7 +88,9 @@ static enum status refuse_unknown(const struct conditions *conditions, int prope
                   conditions->temperature, key, properties[property].unit);
 }
 
-// Air takes up other vapours whatever its humidity.
+// Air takes up other vapours whatever its humidity. Humidity is a share of the
+// saturation pressure of water, so it says nothing of other vapours. Both given would
+// contradict each other.
 static enum status complete_air(struct conditions *conditions, struct reason *reason)
 {
     const double humidity = conditions->relative_humidity;
@@ -107,6 +114,7 @@ static enum status complete_air(struct conditions *conditions, struct reason *re
     return STATUS_OK;
 }
 
+// A temperature below 200 was meant in degrees Celsius.
 enum status conditions_complete(struct conditions *conditions, unsigned needed,
                                 struct reason *reason)
 {
@@ -142,6 +150,8 @@ static void append(char *text, size_t size, const char *more)
     snprintf(text + length, size - length, "%s", more);
 }
 
+// A given value is shown beside the liquid's own, so that a reader sees what was
+// changed.
 const char *conditions_describe(const struct conditions *conditions, unsigned shown,
                                 char *text, size_t size)
 {
@@ -165,6 +175,7 @@ const char *conditions_describe(const struct conditions *conditions, unsigned sh
     return text;
 }
 
+// More than a tenth: tables of one liquid differ by less.
 void conditions_note(const struct conditions *conditions, unsigned needed)
 {
     const char *name = fluid_name((enum fluid)conditions->fluid);

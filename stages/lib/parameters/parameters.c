@@ -3,6 +3,11 @@
 // one, then for each row of the table the value is found (given, or the default), its
 // type and bounds are checked, and it is stored at its offset. Problems are counted and
 // reported all together, so that a user corrects them in one go.
+//
+// Keys are paths: "walls.lid.velocity" is a member of a member, in JSON nested objects,
+// on the command line dots. Effective parameters are built beside the struct, entry by
+// entry; they go into the artifact, so two runs with equal effective parameters are
+// equal.
 #include "parameters/parameters.h"
 
 #include "basics/memory.h"
@@ -45,7 +50,8 @@ char *json_canonical(const json_t *json)
                                 JSON_ENCODE_ANY);
 }
 
-// As the user wrote it: numbers with no more digits than they need.
+// As the user wrote it: numbers with no more digits than they need. The fewest digits
+// from 6 on that read back as the same number; 0.1 stays 0.1.
 static char *as_written(const json_t *value)
 {
     for (int digits = 6; digits < 17; digits++) {
@@ -61,6 +67,7 @@ static char *as_written(const json_t *value)
     return json_canonical(value);
 }
 
+// The run ends after all complaints (parameters_fill).
 static void complain(struct filling *filling, const char *key, const char *rule,
                      const json_t *got)
 {
@@ -73,6 +80,7 @@ static void complain(struct filling *filling, const char *key, const char *rule,
 
 // ---- one value ----------------------------------------------------------------------
 
+// The place of NAME among "a|b|c", or -1.
 static int choice_index(const char *choices, const char *name)
 {
     const size_t length = strlen(name);
@@ -85,6 +93,7 @@ static int choice_index(const char *choices, const char *name)
     }
 }
 
+// False for NAN, which JSON cannot say anyway.
 static bool within_bounds(const struct parameter *parameter, double value)
 {
     switch (parameter->bound) {
@@ -108,6 +117,7 @@ static bool is_number_list(const json_t *value)
     return true;
 }
 
+// A list of choices is checked entry by entry as it is stored.
 static bool has_type(const struct parameter *parameter, const json_t *value)
 {
     switch (parameter->type) {
@@ -143,6 +153,7 @@ static bool has_type(const struct parameter *parameter, const json_t *value)
     return true;
 }
 
+// Every number of a list or point.
 static void check_bounds(struct filling *filling, const struct parameter *parameter,
                          const json_t *value)
 {
@@ -159,6 +170,7 @@ static void check_bounds(struct filling *filling, const struct parameter *parame
     }
 }
 
+// 0 after a complaint, so that whoever goes on has a place in the table.
 static int checked_choice(struct filling *filling, const struct parameter *parameter,
                           const json_t *value)
 {
@@ -176,6 +188,7 @@ static double number_or_nan(const json_t *value)
     return json_is_null(value) ? (double)NAN : json_number_value(value);
 }
 
+// Types are checked before, so nothing here can fail but a choice.
 static void store(struct filling *filling, const struct parameter *parameter,
                   const json_t *value, void *parameters)
 {
@@ -229,6 +242,7 @@ static void store(struct filling *filling, const struct parameter *parameter,
 
 // ---- the whole section --------------------------------------------------------------
 
+// NULL where there is none; walks along the dots of KEY.
 static json_t *find(const json_t *section, const char *key)
 {
     char part[128];
@@ -242,6 +256,7 @@ static json_t *find(const json_t *section, const char *key)
     }
 }
 
+// Objects on the way are made where they are missing; anything else there is replaced.
 static void put(json_t *section, const char *key, json_t *value)
 {
     char part[128];
@@ -270,6 +285,7 @@ void parameters_give(json_t *section, const char *key, const json_t *other)
     put(section, key, value);
 }
 
+// Whether PATH is a group of keys.
 static bool is_prefix(const struct parameter *table, const char *path)
 {
     const size_t length = strlen(path);
@@ -296,7 +312,8 @@ static int distance(const char *path, const char *key)
     return whole < last ? whole : last;
 }
 
-// The key most like PATH; NULL where more than half of its letters differ.
+// The key most like PATH; NULL where more than half of its letters differ. By edit
+// distance: a typing error, or the right name in the wrong group.
 static const char *nearest_key(const struct parameter *table, const char *path)
 {
     const char *nearest = NULL;
@@ -326,6 +343,8 @@ static void report_unknown(struct filling *filling, const char *path)
     filling->problems++;
 }
 
+// Dots within a key are refused: {"a.b": 1} would look like {"a": {"b": 1}} and mean
+// something else.
 static void check_keys(struct filling *filling, json_t *object, const char *prefix)
 {
     const char *key;
@@ -371,7 +390,7 @@ static int by_text(const void *a, const void *b)
     return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
-// The names in OBJECT, sorted.
+// The names in OBJECT, sorted. By strcmp: the order of a JSON object must not matter.
 static struct named_rows sorted_names(json_t *object)
 {
     struct named_rows rows = {.name =
@@ -385,7 +404,8 @@ static struct named_rows sorted_names(json_t *object)
     return rows;
 }
 
-// Fills a struct for each name in OBJECT, and returns what they are in effect.
+// Fills a struct for each name in OBJECT, and returns what they are in effect. Each row
+// is filled like a section of its own; its problems count with those of the whole.
 static json_t *take_rows(struct filling *filling, const struct parameter *parameter,
                          json_t *object, struct named_rows *target)
 {
@@ -432,6 +452,7 @@ int named_row(const struct named_rows *rows, const char *name)
     return -1;
 }
 
+// Defaults are JSON texts, so that a default takes the same way as a value.
 static void take(struct filling *filling, const struct parameter *parameter,
                  const json_t *section, json_t *effective, void *parameters)
 {
@@ -491,6 +512,7 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
     return effective;
 }
 
+// What is not JSON is text: --set dry.liquid=viscous needs no quotes.
 void parameters_set(json_t *section, const char *assignment)
 {
     const char *equals = strchr(assignment, '=');
