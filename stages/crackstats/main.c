@@ -64,6 +64,7 @@ struct reading {
     json_t *seen; // by digest: the path it was first read from
 };
 
+// Every input's digest goes into the provenance, in the order in which they were named.
 static struct artifact *open_next(struct reading *reading, const char *name)
 {
     struct artifact *artifact =
@@ -84,7 +85,8 @@ static void note_repeated(struct reading *reading, const struct artifact *input)
                             json_string(input_name(input->path)));
 }
 
-// The next run; false when there are no more.
+// The next run; false when there are no more. A drying where a response is due belongs
+// to no run: that is refused.
 static bool next_run(struct reading *reading, struct run *run, const char **path)
 {
     if (!reading->ahead && reading->next == reading->invocation->n_input) return false;
@@ -101,6 +103,8 @@ static bool next_run(struct reading *reading, struct run *run, const char **path
     return true;
 }
 
+// Two numbers that a response takes over from its drying: too little for a proof,
+// enough to catch files that were mixed up.
 static void must_belong(const struct liquid *liquid, const struct run *run,
                         const char *path)
 {
@@ -115,7 +119,8 @@ static void must_belong(const struct liquid *liquid, const struct run *run,
             path, liquid->first_period_end, run->first_period_end);
 }
 
-// Its drying; false when none was given.
+// Its drying; false when none was given. An input that is no drying is kept for
+// next_run.
 static bool next_liquid(struct reading *reading, const struct run *run,
                         struct liquid *liquid)
 {
@@ -131,6 +136,8 @@ static bool next_liquid(struct reading *reading, const struct run *run,
     return true;
 }
 
+// Tables of runs are added class by class, so snapshots must be as many; bonds need
+// not, if the user says so.
 static void must_fit(const struct ensemble *ensemble, const struct run *run,
                      const char *path, bool same_bonds)
 {
@@ -157,6 +164,7 @@ static void check_classes(const struct crackstats_parameters *parameters)
             (int)most, (int)parameters->slices, (int)parameters->intervals);
 }
 
+// The number of runs is known only at the end, so groups are checked here.
 static struct ensemble read_study(const struct invocation *invocation, json_t *digests,
                                   const struct crackstats_parameters *parameters)
 {

@@ -9,6 +9,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+// null where a statistic has no value; whole numbers without a point, so that counts
+// look like counts.
 json_t *json_value(double value)
 {
     if (!isfinite(value)) return json_null();
@@ -17,6 +19,7 @@ json_t *json_value(double value)
                : json_real(value);
 }
 
+// Normal and shear have one sum: their means may be fractions, their total is of both.
 static json_t *by_mode(const double of[MODE_COUNT], double runs)
 {
     return json_pack("{s:o,s:o,s:o}", "normal", json_value(of[MODE_NORMAL] / runs),
@@ -38,7 +41,8 @@ static json_t *periods(const struct counts *counts, double runs)
     return list;
 }
 
-// Classes of equal width, from START to END.
+// Classes of equal width, from START to END. Borders are interpolated from both ends,
+// so that the last one is exactly END.
 static json_t *classes(const double (*of)[MODE_COUNT], int n, double start, double end,
                        double runs)
 {
@@ -53,7 +57,8 @@ static json_t *classes(const double (*of)[MODE_COUNT], int n, double start, doub
     return list;
 }
 
-// Puts into ENTRY how the counts of a class, RUNS times their mean, scatter.
+// Puts into ENTRY how the counts of a class, RUNS times their mean, scatter. One run
+// has no deviation and no interval: null.
 static void put_scatter(json_t *entry, const double squares[COLUMN_COUNT], int runs,
                         double confidence)
 {
@@ -85,7 +90,8 @@ static json_t *scattered(json_t *list, const double (*squares)[COLUMN_COUNT], in
 }
 
 // At the end of each interval of saturation: cracks so far in every slice, and the
-// saturation of the slices.
+// saturation of the slices. In the order of drying: the first interval is the wettest.
+// The liquid is known only if each run had its drying.
 static json_t *profiles(const struct ensemble *ensemble)
 {
     const int n_slice = ensemble->classes.n_slice, n = ensemble->classes.n_interval;
@@ -136,6 +142,8 @@ static json_t *size_distribution(struct sizes sizes, double runs)
 
 // ---- orientation --------------------------------------------------------------------
 
+// Sum of n n over its trace: its trace is 1, and a third in each direction where cracks
+// have none.
 static json_t *fabric(const double sum[9])
 {
     const double trace = sum[0] + sum[4] + sum[8];
@@ -168,6 +176,7 @@ static json_t *orientation(const struct ensemble *ensemble, double confidence)
 
 // ---- deformation, front -------------------------------------------------------------
 
+// Means over the runs at each snapshot; a run without a value leaves none.
 static json_t *deformation(const struct ensemble *ensemble)
 {
     static const char *const names[STRAIN_COUNT] = {"xx", "yy", "zz", "yz", "xz", "xy"};
@@ -204,6 +213,7 @@ static json_t *front(const struct ensemble *ensemble)
                      "slice_saturation", local);
 }
 
+// In the order of schemas/crackstats.json.
 void report_tables(json_t *report, const struct ensemble *ensemble, double confidence)
 {
     const struct counts *counts = &ensemble->counts;
