@@ -3,6 +3,13 @@
 // symbols (n_particle and so on, defined where they first occur), range and order of
 // values. Large datasets are read in blocks. The first breach ends the check with its
 // row and value.
+//
+// Two statuses: STATUS_BAD_DATA is a breach of the schema; STATUS_NO a number too
+// large, or two too near each other, for their squares to be numbers. Results that are
+// so come from sizes that were given (write.c).
+//
+// Symbols are defined by the first dataset that has them, so the order of datasets in a
+// schema matters: what counts comes before what is counted.
 #include "artifacts/check.h"
 
 #include "basics/memory.h"
@@ -38,6 +45,7 @@ struct subject {
     hsize_t row_values; // values in one row
 };
 
+// A schema has some twenty symbols: a linear search is enough.
 static bool lookup(const struct symbols *symbols, const char *name, hsize_t *value)
 {
     for (int k = 0; k < symbols->count; k++) {
@@ -59,7 +67,7 @@ static void define(struct symbols *symbols, const char *name, hsize_t value)
 // ---- shape --------------------------------------------------------------------------
 
 // "n_face+1" stands for one more than n_face; a symbol met first is defined by what is
-// there.
+// there. Offsets have one row more than what they point into.
 static enum status check_symbol(struct symbols *symbols, const char *text,
                                 hsize_t extent, const struct subject *subject, int axis,
                                 struct reason *reason)
@@ -81,6 +89,7 @@ static enum status check_symbol(struct symbols *symbols, const char *text,
     return STATUS_OK;
 }
 
+// Rank first, as extents of more axes than MOST_RANK have no place.
 static enum status check_shape(struct subject *subject, struct symbols *symbols,
                                struct reason *reason)
 {
@@ -128,6 +137,8 @@ static enum status check_size(const struct subject *subject, size_t image_size,
                   image_size);
 }
 
+// Width and byte order may differ: HDF5 converts. A float where an integer is due would
+// lose its fraction silently.
 static enum status check_class(const struct subject *subject, struct reason *reason)
 {
     const hid_t wanted = entry_file_type(subject->rules);
@@ -143,6 +154,7 @@ static enum status check_class(const struct subject *subject, struct reason *rea
 // ---- values -------------------------------------------------------------------------
 
 // A bound given as a number or as a symbol. False when the rule is not there.
+// "maximum": "n_node-1" is not possible; schemas say "below": "n_node".
 static bool bound(const json_t *rules, const char *rule, const struct symbols *symbols,
                   double *value)
 {
@@ -154,6 +166,7 @@ static bool bound(const json_t *rules, const char *rule, const struct symbols *s
     return true;
 }
 
+// The row is that of the dataset, whatever its rank.
 static enum status breach(const struct subject *subject, hsize_t index,
                           const char *sign, const json_t *rule, double limit,
                           double got, struct reason *reason)
@@ -193,6 +206,7 @@ static hsize_t first_breach(const double *value, hsize_t count, int rule, double
     return count;
 }
 
+// Size first: NAN fails it, so that the other rules see numbers only.
 static enum status check_range(const struct subject *subject, const double *block,
                                hsize_t first, hsize_t count,
                                const struct symbols *symbols, struct reason *reason)
@@ -225,6 +239,7 @@ static bool has(const struct subject *subject, const char *rule)
 }
 
 // Rules on how values follow one another; PREVIOUS is the value before the block.
+// PREVIOUS carries the last value over the border between two blocks.
 static enum status check_order(const struct subject *subject, const double *block,
                                hsize_t first, hsize_t count, double previous,
                                struct reason *reason)
@@ -251,6 +266,7 @@ static enum status check_order(const struct subject *subject, const double *bloc
     return STATUS_OK;
 }
 
+// As doubles, whatever the type: exact for integers up to 2^53.
 static bool read_block(const struct subject *subject, hsize_t first_row, hsize_t rows,
                        double *block)
 {
@@ -267,6 +283,7 @@ static bool read_block(const struct subject *subject, hsize_t first_row, hsize_t
     return result >= 0;
 }
 
+// Offsets go from 0 to the number of rows that they point into.
 static enum status check_ends(const struct subject *subject, double first, double last,
                               struct symbols *symbols, struct reason *reason)
 {
@@ -284,6 +301,7 @@ static enum status check_ends(const struct subject *subject, double first, doubl
     return STATUS_OK;
 }
 
+// A block is whole rows and some 256 kB: small enough for the cache.
 static enum status check_values(const struct subject *subject, struct symbols *symbols,
                                 struct reason *reason)
 {
@@ -314,6 +332,7 @@ static enum status check_values(const struct subject *subject, struct symbols *s
     return status ? status : check_ends(subject, first, last, symbols, reason);
 }
 
+// For the two corners of a box. An edge below LEAST_EDGE would give volumes of 0.
 static enum status check_less_than(hid_t file, const struct subject *subject,
                                    struct reason *reason)
 {
@@ -353,6 +372,8 @@ static bool is_left_out(hid_t file, const json_t *rules)
     return json_is_true(json_object_get(rules, "optional")) && !has_entry(file, rules);
 }
 
+// In this order because each needs the one before: values cannot be read before their
+// shape is known.
 static enum status check_dataset(hid_t file, const json_t *rules,
                                  struct symbols *symbols, size_t image_size,
                                  struct reason *reason)
@@ -372,6 +393,7 @@ static enum status check_dataset(hid_t file, const json_t *rules,
     return status;
 }
 
+// The same rules of range as for datasets, with one value.
 static enum status check_attribute(hid_t file, const json_t *rules,
                                    struct reason *reason)
 {

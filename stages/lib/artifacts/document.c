@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // JSON artifacts: told apart from HDF5 by their first bytes, checked against a schema,
 // written whole or not at all.
+//
+// Only the first level of members is checked, by name and type; what is deeper is for
+// whoever reads it.
 #include "artifacts/document.h"
 
 #include "artifacts/artifact.h"
@@ -11,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// An HDF5 file begins with a byte above 127, so "{" decides.
 bool is_document(const struct bytes *bytes)
 {
     size_t k = 0;
@@ -19,6 +23,7 @@ bool is_document(const struct bytes *bytes)
     return k < bytes->size && bytes->data[k] == '{';
 }
 
+// Also true while there are blanks only: then more is read.
 bool may_be_either(const struct bytes *beginning)
 {
     size_t k = 0;
@@ -69,6 +74,7 @@ enum status check_document(const json_t *document, const struct schema *schema,
     return STATUS_OK;
 }
 
+// A new reference; the schema of the document is found by its own id.
 json_t *document_of(const char *path, const struct bytes *bytes)
 {
     json_error_t error;
@@ -91,6 +97,7 @@ json_t *document_of(const char *path, const struct bytes *bytes)
     return document;
 }
 
+// 17 digits give each double back exactly. Takes DOCUMENT over.
 void write_json(const char *path, json_t *document)
 {
     char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));

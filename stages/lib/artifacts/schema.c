@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The JSON texts are part of the program (schema_NAME). Each call parses the one asked
 // for; datasets of the schemas it "extends" come first, in their order.
+//
+// Schemas are data, so the product, its documents and other programs read one and the
+// same text. A new schema needs a file in schemas/, a line here and one where it is
+// linked in.
 #include "artifacts/schema.h"
 
 #include "basics/memory.h"
@@ -24,6 +28,7 @@ static const struct {
                {"invasion", schema_invasion}, {"check", schema_check},
                {"motion", schema_motion},     {"shearstats", schema_shearstats}};
 
+// A schema that does not parse is our own error.
 static json_t *load(const char *text)
 {
     json_error_t error;
@@ -39,13 +44,14 @@ static int index_of(const char *name)
     return -1;
 }
 
-// "craquelure/packing/1" -> "packing"
+// "craquelure/packing/1" -> "packing" A bare name and a whole id are both understood.
 static void strip(const char *name, char stripped[64])
 {
     const char *begin = strncmp(name, "craquelure/", 11) ? name : name + 11;
     snprintf(stripped, 64, "%.*s", (int)strcspn(begin, "/"), begin);
 }
 
+// NULL for a name that is not known. Extended schemas are not extended further.
 struct schema *schema_find(const char *name)
 {
     char stripped[64];
@@ -105,6 +111,7 @@ const json_t *schema_attribute(const struct schema *schema, const char *name)
     return find_entry(schema->attributes, name);
 }
 
+// A dataset has a shape, an attribute of a group has none.
 bool has_entry(hid_t file, const json_t *entry)
 {
     const char *name = json_string_value(json_object_get(entry, "name"));
@@ -114,6 +121,7 @@ bool has_entry(hid_t file, const json_t *entry)
     return H5Aexists_by_name(file, group, strrchr(name, '/') + 1, H5P_DEFAULT) > 0;
 }
 
+// Types in files are little-endian, whatever the machine; in memory they are its own.
 static int type_index(const json_t *entry)
 {
     static const char *const names[] = {"float64", "int32", "int64", "uint8", "int8"};

@@ -2,13 +2,17 @@
 // What the table of a stage's parameters tells its user: --help and --schema. Dots in
 // keys become nested objects in the JSON Schema; bounds become minimum, maximum and
 // exclusiveMinimum, choices an enum.
+//
+// Both come from the same rows, so that help and schema cannot contradict what
+// parameters_fill accepts. docs/reference.md is made from them, too.
 #include "parameters/parameters.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-// As short as it can be without losing a digit.
+// As short as it can be without losing a digit. Six digits are enough for nearly all
+// defaults.
 static const char *number_text(double value, char text[24])
 {
     snprintf(text, 24, "%g", value);
@@ -22,6 +26,7 @@ bool parameter_may_be_null(const struct parameter *parameter)
            (parameter->fallback && !strcmp(parameter->fallback, "null"));
 }
 
+// In the user's words; also part of messages (parameters.c).
 const char *parameter_rule(const struct parameter *parameter, char text[80])
 {
     char low[24], high[24];
@@ -41,7 +46,8 @@ const char *parameter_rule(const struct parameter *parameter, char text[80])
 
 enum { HELP_WIDTH = 78 }; // argp wraps at 79, without our indent
 
-// Words of TEXT, wrapped, each line behind INDENT blanks.
+// Words of TEXT, wrapped, each line behind INDENT blanks. A word longer than a line has
+// one to itself.
 static void print_wrapped(FILE *stream, const char *text, int indent)
 {
     int column = fprintf(stream, "%*s", indent, "");
@@ -71,6 +77,7 @@ static void print_choices(FILE *stream, const char *choices, int column)
     }
 }
 
+// Rows of named objects come indented under their names.
 static void print_rows(const struct parameter *table, const char *prefix, FILE *stream)
 {
     for (const struct parameter *p = table; p->key; p++) {
@@ -123,6 +130,7 @@ static json_t *three_of(json_t *items)
 
 static json_t *table_schema(const struct parameter *table);
 
+// Sizes of numbers are not bounded here: that is a rule of the program.
 static json_t *value_schema(const struct parameter *parameter)
 {
     switch (parameter->type) {
@@ -157,12 +165,14 @@ static json_t *value_schema(const struct parameter *parameter)
     return NULL;
 }
 
+// No other members than those listed, but a comment everywhere.
 static json_t *open_object(void)
 {
     return json_pack("{s:s,s:b,s:{s:{}}}", "type", "object", "additionalProperties", 0,
                      "properties", "comment");
 }
 
+// KEY is left at its last part.
 static json_t *nested_properties(json_t *schema, const char **key)
 {
     char part[128];

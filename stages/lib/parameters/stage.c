@@ -98,6 +98,7 @@ static void add_input(struct command_line *line, const char *name)
     invocation->inputs[invocation->n_input++] = name;
 }
 
+// The last of an option counts, but --set, which adds up.
 static error_t parse_option(int key, char *argument, struct argp_state *state)
 {
     struct command_line *line = state->input;
@@ -146,6 +147,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     }
 }
 
+// Whether some parameter of TABLE may stand in "conditions".
 static bool shares(const struct parameter *table)
 {
     for (const struct parameter *p = table; p->key; p++)
@@ -181,7 +183,7 @@ static void print_cited(const struct stage *stage, FILE *stream)
 }
 
 // The text of --help behind the options: parameters with their defaults, what is read
-// and written.
+// and written. argp frees the text that is returned.
 static char *help_filter(int key, const char *text, void *input)
 {
     if (key != ARGP_KEY_HELP_POST_DOC) return (char *)(uintptr_t)text;
@@ -210,6 +212,7 @@ static char *help_filter(int key, const char *text, void *input)
     return help;
 }
 
+// A key that occurs twice is refused: which of them counts would be a guess.
 static json_t *load_json(const char *path)
 {
     struct bytes bytes = read_whole(path);
@@ -232,7 +235,7 @@ static bool is_section(const char *key)
 }
 
 // Whether JSON has a section of a stage; pack.check is a text, the section of check an
-// object.
+// object. Otherwise it is one stage's own section.
 static bool is_scene(json_t *json, const struct parameter *table)
 {
     const char *key;
@@ -264,7 +267,8 @@ static json_t *object_of_scene(const json_t *scene, const char *path, const char
     return object;
 }
 
-// With what it shares with others. A new reference.
+// With what it shares with others. A new reference. Unknown sections are refused, since
+// a misspelt one would be ignored silently.
 static json_t *section_of_scene(const json_t *scene, const char *path,
                                 const struct stage *stage)
 {
@@ -288,6 +292,7 @@ static json_t *section_of_scene(const json_t *scene, const char *path,
     return section;
 }
 
+// Without -p all defaults; --set may follow.
 static json_t *load_section(const struct command_line *line)
 {
     if (!line->params) return json_object();
@@ -308,6 +313,7 @@ static void set(json_t *section, const char *stage, const char *assignment)
     parameters_set(section, assignment);
 }
 
+// WHERE begins each message: the file, the section, and whether --set took part.
 static void fill(const struct command_line *line, void *parameters)
 {
     json_t *section = load_section(line);
@@ -393,6 +399,7 @@ static void check_checkpoint(const struct invocation *invocation)
     check_other(invocation, "--checkpoint", path);
 }
 
+// Without an input standard input is read, if the stage takes any.
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
