@@ -3,6 +3,8 @@
 //
 // Text goes to memory first and out in one piece. Suggestions and cost are left out
 // where something is wrong, since they would be of the wrong grains.
+//
+// Numbers for people have three digits, those for programs all.
 #include "tell.h"
 
 #include "basics/file.h"
@@ -23,6 +25,7 @@ int count_wrong(const struct findings *findings)
 
 // ---- for people ---------------------------------------------------------------------
 
+// Nothing here judges: findings come before.
 static void tell_facts(const struct checked *checked, FILE *out)
 {
     const struct packing_facts *facts = checked->facts;
@@ -47,6 +50,7 @@ static void tell_facts(const struct checked *checked, FILE *out)
     fputc('\n', out);
 }
 
+// As --set takes them: a.b=1 c=[1,2,3].
 static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
 {
     const char *key;
@@ -67,6 +71,7 @@ static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
     }
 }
 
+// The cost of each stage by the number of grains (suggest.c).
 static void tell_suggested(const struct checked *checked, FILE *out)
 {
     json_t *suggested = suggest(checked->material, checked->packing, checked->facts);
@@ -88,6 +93,7 @@ static void tell_suggested(const struct checked *checked, FILE *out)
     json_decref(cost);
 }
 
+// To standard output: it is called where no output was named.
 void tell(const struct checked *checked, int wrong)
 {
     char *text = NULL;
@@ -147,6 +153,7 @@ static json_t *box_json(const struct checked *checked)
     return box;
 }
 
+// In the order of schemas/check.json; null where there is nothing to say.
 json_t *checked_json(const struct checked *checked, int wrong)
 {
     const struct packing_facts *facts = checked->facts;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // packing_facts.c measures, here is judged: each function turns some of the facts into
 // findings, and says what to do, with the key that does it. The limits stand below.
+//
+// Findings have three severities: impossible (no packing of grains is like this), wrong
+// (hardly what was meant), note. Each has a fixed name for programs and a text for
+// people. A finding names the first row it is about, so that it can be looked at.
 #include "geometry/packing_check.h"
 
 #include <math.h>
@@ -14,6 +18,8 @@ static const double LARGEST_RADIUS = 1e-2, SMALLEST_RADIUS = 1e-9;
 static const double SHARE_THAT_COUNTS = 0.01; // of the grains: fewer are slips of a few
 static const double EMPTY_MOST = 0.1;         // share of the box
 
+// Kept sorted, worst first, those of one severity in the order in which they were
+// found.
 void add_finding(struct findings *findings, enum severity severity, const char *name,
                  const char *format, ...)
 {
@@ -32,6 +38,7 @@ void add_finding(struct findings *findings, enum severity severity, const char *
 
 // ---- one after the other ------------------------------------------------------------
 
+// Powers of 1000, because files are in millimetres, micrometres or nanometres.
 static void judge_units(const struct packing_facts *facts, struct findings *findings)
 {
     static const char *const unit[] = {"milli", "micro", "nano"};
@@ -58,6 +65,7 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
             facts->largest, facts->largest / facts->median);
 }
 
+// The gravest of three only: a grain outside has its centre outside, too.
 static void judge_places(const struct packing_facts *facts, struct findings *findings)
 {
     if (facts->coincident)
@@ -102,6 +110,8 @@ static bool overlap_too_much(const struct packing_facts *facts)
     return facts->overlap > 0.5 || facts->overlapping > SHARE_THAT_COUNTS * facts->n;
 }
 
+// From the most specific cause to the least: a flattened body and doubled radii are
+// overlaps as well.
 static void judge_overlaps(const struct packing_facts *facts, struct findings *findings)
 {
     const int *worst = facts->worst;
@@ -136,6 +146,8 @@ static void judge_overlaps(const struct packing_facts *facts, struct findings *f
                     facts->overlap);
 }
 
+// `far` is how far from a surface a place must be to count as empty; where the grains
+// reach all walls, the empty part is inside.
 static void judge_room(const struct packing *packing, const struct packing_facts *facts,
                        struct findings *findings)
 {
@@ -173,6 +185,7 @@ static void judge_room(const struct packing *packing, const struct packing_facts
                     high.z);
 }
 
+// A layer across y is what other stages expect (1 is y).
 static void judge_plane(const struct packing_facts *facts, struct findings *findings)
 {
     if (facts->plane < 0 || facts->plane == 1 || facts->overlapping > facts->n / 2)
