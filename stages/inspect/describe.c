@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+// By the type of the schema, not by the value: 3.0 stays 3.0.
 static json_t *number(double value, const json_t *entry)
 {
     return strcmp(json_string_value(json_object_get(entry, "type")), "float64")
@@ -22,6 +23,7 @@ static json_t *number(double value, const json_t *entry)
 
 // ---- one dataset --------------------------------------------------------------------
 
+// In file types: the same values have the same digest on any machine.
 static void put_digest(json_t *description, const struct artifact *artifact,
                        const json_t *entry)
 {
@@ -74,6 +76,7 @@ static json_t *describe_dataset(const struct artifact *artifact, const json_t *e
 
 // ---- the artifact -------------------------------------------------------------------
 
+// Cuts TEXT in place.
 static json_t *lines_of(char *text)
 {
     json_t *lines = json_array();
@@ -82,6 +85,7 @@ static json_t *lines_of(char *text)
     return lines;
 }
 
+// JSON where it is JSON (parameters, inputs), else text; null where it is missing.
 static void put_provenance(json_t *description, const struct artifact *artifact)
 {
     for (const char *const *name = provenance_names; *name; name++) {
@@ -136,6 +140,7 @@ json_t *describe_artifact(const struct artifact *artifact)
     return description;
 }
 
+// Lists in lists, by the rank of the dataset; row-major.
 static json_t *nested(const struct dataset_values *values, int axis, size_t *at,
                       const json_t *entry)
 {

@@ -25,6 +25,7 @@ struct series {
     int count, capacity;
 };
 
+// One file a frame; a file of frames and times (.pvd) comes last.
 static void add_frame(struct series *series, double time, const struct vtu_grid *grid)
 {
     GROW_ARRAY(series->frame, series->count, series->capacity);
@@ -50,7 +51,8 @@ static double frame_saturation(int frame, int n_frame)
     return 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1);
 }
 
-// Liquid in the throats.
+// Liquid in the throats. A step may pass several levels at once: then one frame stands
+// for all of them.
 static void drying_series(const struct artifact *artifact, struct series *series,
                           int n_frame)
 {
@@ -85,7 +87,7 @@ static void drying_series(const struct artifact *artifact, struct series *series
     network_free(&network);
 }
 
-// Force on the grains.
+// Force on the grains. The first and the last row are always taken.
 static void forces_series(const struct artifact *artifact, struct series *series,
                           int n_frame)
 {
@@ -141,6 +143,7 @@ static void crack_view_free(struct crack_view *view)
     free(view->state);
 }
 
+// Contacts are sorted by their grains; a bond of grains that never touched has none.
 static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
 {
     if (!view->n_contact) return -1;
@@ -149,6 +152,7 @@ static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
     return found ? (int)(found - (const int32_t(*)[2])view->contact) : -1;
 }
 
+// From the start each time: frames are few.
 static void update_cracks(struct crack_view *view, const struct packing *packing,
                           double time)
 {
@@ -166,6 +170,7 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
 }
 
 // Displacements of the grains; forces, cracks and liquid bridges at the contacts.
+// Contacts are those of all snapshots, with forces of 0 where one is open.
 static void response_series(const struct artifact *artifact, struct series *series)
 {
     static const char *const bridge_name[] = {
@@ -238,7 +243,9 @@ static struct vector in_box(const struct packing *packing, struct vector lower,
 }
 
 // The contacts between grains of a snapshot, without those with walls and around the
-// box; FORCE is moved along. Returns how many are left.
+// box; FORCE is moved along. Returns how many are left. A contact around a box that
+// repeats would be drawn across it: those longer than twice the grains' size are left
+// out.
 static int drawn_contacts(const struct packing *packing, const struct vector *at,
                           int64_t count, int32_t (*pair)[2], struct vector *force)
 {
@@ -267,7 +274,8 @@ static void check_counts(const struct artifact *artifact, const int64_t *contact
             input_name(artifact->path), n_contact);
 }
 
-// Grains as they move, and the forces at their contacts.
+// Grains as they move, and the forces at their contacts. Positions are brought back
+// into the box for the picture only.
 static void motion_series(const struct artifact *artifact, struct series *series)
 {
     struct packing packing = artifact_get_packing(artifact);

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Extended XYZ, as OVITO and ASE read it: for each frame the number of grains, a line
+// of keys (Lattice, Origin, pbc, Time, Properties), then a row a grain. Nine digits:
+// coordinates to 1e-9 of the box, without making files twice as large.
 #include "xyz.h"
 
 #include "basics/file.h"
@@ -16,6 +19,7 @@ struct xyz_frame {
     const int *broken;
 };
 
+// Lattice is the box, row by row; pbc says where it repeats.
 static void put_header(FILE *stream, const struct packing *packing,
                        const struct xyz_frame *frame)
 {

@@ -8,6 +8,9 @@
 //     trapped_saturation  = residual saturation (volume of trapped clusters / of all),
 //     breakthrough_share  = throats (or nodes) with an entry pressure up to the highest
 //                           before breakthrough, over all that take part.
+//
+// Everything is quasi-static: gas enters the widest throat that it touches, and
+// pressures are those of capillary equilibrium.
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "basics/status.h"
@@ -76,7 +79,8 @@ static const struct stage stage = {
     .parameters = table};
 
 // Share of the throats, or of the nodes that have a throat, with an entry pressure up
-// to PRESSURE.
+// to PRESSURE. At the percolation threshold this is the share of bonds, or sites, that
+// must be open.
 static double share_up_to(const struct network *network, const struct entry *entry,
                           enum invasion_rule rule, double pressure)
 {
@@ -91,6 +95,8 @@ static double share_up_to(const struct network *network, const struct entry *ent
     return (double)n / all;
 }
 
+// Events are counted from 0; `breakthrough` is how many there were before gas touched
+// the outlet, below 0 if it never did.
 static void put_summary(struct artifact *artifact, const struct network *network,
                         const struct invasion_conditions *conditions,
                         const struct invasion *invasion, const struct outcome *outcome,
@@ -121,6 +127,7 @@ static void put_summary(struct artifact *artifact, const struct network *network
                         share_up_to(network, entry, conditions->rule, highest));
 }
 
+// Events of throats only by rule=throats; nodes are entered by either rule.
 static void put_outcome(struct artifact *artifact, const struct network *network,
                         const struct invasion *invasion, const struct outcome *outcome)
 {
@@ -147,6 +154,8 @@ static void put_outcome(struct artifact *artifact, const struct network *network
                                            "/throats/event", "/throats/cluster", NULL});
 }
 
+// Relative to the network full of that phase; numbers of a material only where there
+// are any (transport.c).
 static void put_transport(struct artifact *artifact, const struct transport *transport)
 {
     static const char *const name[PHASES][PROPERTIES] = {
@@ -196,6 +205,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
     return text;
 }
 
+// The density counts only under gravity.
 static unsigned needed_properties(const struct invade_parameters *parameters)
 {
     return 1u << FLUID_SURFACE_TENSION |
@@ -212,6 +222,7 @@ static void complete_entry(struct invade_parameters *parameters)
     entry->liquid_density = given->property[FLUID_DENSITY];
 }
 
+// Before anything is read. Trapping without an outlet would keep all liquid in.
 static void check_walls(const struct invasion_conditions *conditions, bool transport)
 {
     if (transport && conditions->outlet == 0)
