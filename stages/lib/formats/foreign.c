@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What readers of networks share: empty networks, checks of throats and their ends, the
 // box around the nodes and the walls that nodes lie on.
+//
+// Formats of pore networks differ in what they have; what artifacts need and a format
+// has not is derived here in one way for all.
 #include "formats/foreign.h"
 
 #include "basics/memory.h"
@@ -10,6 +13,7 @@
 
 static const double LARGEST_SIZE = 1e150; // what artifacts hold
 
+// All zeros, without grains and faces: the network of another program has none.
 struct network new_network(int n_node, int n_throat)
 {
     struct network network = {.n_node = n_node,
@@ -30,6 +34,7 @@ struct network new_network(int n_node, int n_throat)
     return network;
 }
 
+// The lower node first, as in artifacts.
 static enum status check_ends(struct network *network, int t, struct reason *reason)
 {
     int32_t *ends = network->throat_nodes[t];
@@ -48,6 +53,7 @@ static enum status check_ends(struct network *network, int t, struct reason *rea
     return STATUS_OK;
 }
 
+// Sizes of 0 are let through: throats without clearance are shut by those who use them.
 enum status check_network(struct network *network, struct reason *reason)
 {
     for (int i = 0; i < network->n_node; i++)
@@ -78,6 +84,7 @@ static double mean_length(const struct network *network)
     return sum > 0 ? sum : 1;
 }
 
+// A flat network gets half a mean throat length on both sides.
 void box_around_nodes(struct network *network)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -96,6 +103,7 @@ void box_around_nodes(struct network *network)
     }
 }
 
+// By equality: the box was made from these numbers.
 void find_walls(struct network *network)
 {
     for (int i = 0; i < network->n_node; i++)
@@ -105,6 +113,8 @@ void find_walls(struct network *network)
                 network->node_walls[i] |= (uint8_t)(1 << wall);
 }
 
+// A volume that is pi r^2 L for all throats says nothing new, and would stay when radii
+// are drawn.
 void drop_cylinder_volumes(struct network *network)
 {
     double *volume = network->throat_volume;

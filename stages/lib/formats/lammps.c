@@ -3,6 +3,9 @@
 // frame is found first; then its box and periodic sides are read, then the names of the
 // columns, then a row a grain; at the end grains are sorted by id, as LAMMPS writes
 // them in any order.
+//
+// Boxes must be straight: tilted ones (xy xz yz) are refused. Sides are periodic where
+// both flags are p. Types, velocities and other columns are passed over.
 #include "formats/grains.h"
 
 #include "basics/memory.h"
@@ -38,6 +41,7 @@ bool is_lammps(const struct bytes *text)
     return text->size >= 5 && !memcmp(text->data, "ITEM:", 5);
 }
 
+// The last line may have no end.
 static bool next_line(struct lines *lines)
 {
     lines->line = strsep(&lines->rest, "\n");
@@ -60,7 +64,8 @@ static enum status bad_line(const struct lines *lines, const char *rule,
     return refuse(reason, STATUS_BAD_DATA, "line %d: must be %s", lines->number, rule);
 }
 
-// Frames begin with their time step. Goes to the chosen one.
+// Frames begin with their time step. Goes to the chosen one. Only the beginnings of
+// lines are looked at, since a dump may be long.
 static enum status find_frame(struct lines *lines, int64_t frame, struct reason *reason)
 {
     struct lines at = *lines, last = *lines;
@@ -107,7 +112,8 @@ static enum status read_box(struct lines *lines, const char *flags,
     return STATUS_OK;
 }
 
-// Column NAME of a grain's places, "x", with LAMMPS' suffixes.
+// Column NAME of a grain's places, "x", with LAMMPS' suffixes. x as it is, xu
+// unwrapped, xs and xsu scaled by the box.
 static bool is_place(const char *name, int axis, bool *scaled)
 {
     if (name[0] != "xyz"[axis]) return false;
@@ -117,6 +123,7 @@ static bool is_place(const char *name, int axis, bool *scaled)
            !strcmp(suffix, "su");
 }
 
+// The first column of an axis counts where there are several.
 static enum status read_columns(const struct lines *lines, const char *names,
                                 struct columns *columns, struct reason *reason)
 {
@@ -239,6 +246,7 @@ static enum status read_grains(struct lines *lines, const char *names, int64_t n
     return status;
 }
 
+// Items may come in any order before ATOMS, which ends the frame.
 static enum status read_frame(struct lines *lines, struct packing *packing,
                               struct reason *reason)
 {
