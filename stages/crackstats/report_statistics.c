@@ -4,8 +4,8 @@
 // value of each, from the runs that a struct column selects. A statistic that some run
 // does not have (NAN) is null in mean, sd, confidence_interval and test.
 #include "basics/memory.h"
-#include "paired_test.h"
 #include "report.h"
+#include "statistics/paired.h"
 #include "statistics/sample.h"
 
 #include <math.h>

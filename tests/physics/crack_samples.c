@@ -3,7 +3,7 @@
 // sleep data, Hollander and Wolfe's membranes, the manual of scipy; and U by counting
 // all orders.
 #include "../test.h"
-#include "crackstats/paired_test.h"
+#include "statistics/paired.h"
 
 #include <math.h>
 #include <stdlib.h>

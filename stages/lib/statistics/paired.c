@@ -5,7 +5,7 @@
 // s, built rank by rank. Else V is nearly normal, of mean n (n + 1) / 4 and variance
 //     n (n + 1) (2 n + 1) / 24 - sum over ties of (t^3 - t) / 48,
 // with a continuity correction of 1/2.
-#include "paired_test.h"
+#include "statistics/paired.h"
 
 #include "basics/memory.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether two paired samples differ, such as those of the same aggregates treated in
 // two ways. All tests are two-sided.
-#ifndef CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
-#define CRAQUELURE_CRACKSTATS_PAIRED_TEST_H
+#ifndef CRAQUELURE_PAIRED_H
+#define CRAQUELURE_PAIRED_H
 
 #include "statistics/sample.h"
 
