@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A study as its file says it, study.json or a table of runs, checked, and its runs spelled out."""
+import csv
+import itertools
+import json
+import math
+import os
+from dataclasses import dataclass, field
+
+import stages
+from common import LIBRARY, document, refuse
+from schema import nearest, wrong
+
+TREE = os.path.realpath(f"{LIBRARY}/../..")
+MOST_RUNS = 100000
+CRACKS = ["cracks.total", "cracks.normal", "cracks.shear", "fragments.count"]
+# Columns of a table of runs that are no parameters.
+SPECIAL = ("scene", "import", "run")
+
+
+@dataclass
+class Axis:
+    """A name, and the values it takes: each with what it sets, by key."""
+    name: str
+    values: list
+    sets: list
+    title: str = ""
+    unit: str = ""
+    log: bool = False
+
+    def numeric(self):
+        return all(isinstance(v, (int, float)) and not isinstance(v, bool) for v in self.values)
+
+
+@dataclass
+class Run:
+    """A run: its point, values by axis, seed and grains (None: those of the scene), overrides by key."""
+    number: int
+    point: int
+    values: dict
+    seed: object
+    grains: object
+    overrides: dict
+    scene: object = None
+    label: str = ""
+
+
+@dataclass
+class Study:
+    path: str
+    name: str
+    said: dict
+    axes: list
+    points: list
+    runs: list
+    measures: list
+    seed_keys: list = field(default_factory=list)
+
+
+def located(name, beside):
+    """The file NAME: beside the file that names it, here, or of the tree."""
+    for path in (os.path.join(os.path.dirname(beside) or ".", name), name, os.path.join(TREE, name),
+                 os.path.join(TREE, "samples", name), os.path.join(TREE, "samples", f"{name}.json")):
+        if os.path.isfile(path):
+            return os.path.realpath(path)
+    return refuse(66, f"{beside}: {name}: no such file, nor a sample")
+
+
+def label_of(value):
+    return f"{value:g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else \
+        os.path.basename(value).removesuffix(".json") if isinstance(value, str) else json.dumps(value)
+
+
+def check_key(key, where):
+    said = None if key in SPECIAL else stages.wrong_key(key)
+    if said:
+        refuse(65, f"{where}: {key}: {said}")
+
+
+def check_value(key, value, where):
+    """A VALUE of KEY, as a run takes it: of files the path."""
+    if key in ("scene", "import"):
+        return located(value, where.split(":")[0])
+    said = stages.wrong_value(key, value)
+    if said:
+        refuse(65, f"{where}: {key}: {said}")
+    return value
+
+
+# ---- axes -------------------------------------------------------------------------------
+
+def spaced(axis, where):
+    """Values from the first to the last, evenly or by equal ratios."""
+    missing = [name for name in ("from", "to", "count") if name not in axis]
+    if missing:
+        refuse(65, f"{where}: has neither values nor zip, nor {missing[0]}")
+    first, last, count = axis["from"], axis["to"], axis["count"]
+    if axis.get("scale") != "log":
+        return [float(f"{first + (last - first) * k / (count - 1):.12g}") for k in range(count)]
+    if first * last <= 0:
+        refuse(65, f"{where}: from and to of a logarithmic axis must have one sign, and not be 0")
+    return [float(f"{first * (last / first) ** (k / (count - 1)):.12g}") for k in range(count)]
+
+
+def sets_of_axis(axis, where):
+    """The values of an AXIS, and what each sets."""
+    zipped = axis.get("zip")
+    if zipped is not None and ("key" in axis or "keys" in axis):
+        refuse(65, f"{where}: has zip beside key or keys")
+    if zipped is None:
+        keys = axis.get("keys") or ([axis["key"]] if "key" in axis else refuse(65, f"{where}: has no key, keys or zip"))
+        values = axis.get("values") or spaced(axis, where)
+        return values, [{key: value for key in keys} for value in values]
+    lists = list(zipped.values())
+    if not lists or not all(isinstance(each, list) and each for each in lists):
+        refuse(65, f"{where}.zip: must have a list of values for each key")
+    values = axis.get("values") or lists[0]
+    for key, each in [*zipped.items(), ("values", values)]:
+        if len(each) != len(lists[0]):
+            refuse(65, f"{where}.zip.{key}: has {len(each)} values, {next(iter(zipped))} {len(lists[0])}")
+    return values, [{key: each[k] for key, each in zipped.items() if each[k] is not None} for k in range(len(values))]
+
+
+def read_axis(axis, where):
+    values, sets = sets_of_axis(axis, where)
+    for k, given in enumerate(sets):
+        for key in given:
+            check_key(key, where)
+            given[key] = check_value(key, given[key], f"{where}, value {k + 1}")
+    first = next((key for given in sets for key in given), "")
+    name = axis.get("name") or first.split(".")[-1]
+    if len(set(map(str, values))) < len(values):
+        refuse(65, f"{where}: has a value twice")
+    return Axis(name, values, sets, axis.get("title", name), axis.get("unit", ""), axis.get("scale") == "log")
+
+
+def fits(values, choice):
+    """Whether the VALUES of a point are among those of a CHOICE."""
+    return all(values.get(name) in (wanted if isinstance(wanted, list) else [wanted]) for name, wanted in choice.items())
+
+
+def check_choice(choice, axes, where):
+    for name, wanted in choice.items():
+        axis = next((a for a in axes if a.name == name), None)
+        if not axis:
+            refuse(65, f"{where}.{name}: no such axis{nearest(name, [a.name for a in axes])}")
+        for value in wanted if isinstance(wanted, list) else [wanted]:
+            if value not in axis.values:
+                refuse(65, f"{where}.{name}: {label_of(value)} is no value of that axis")
+
+
+def crossed(said, axes, path):
+    """The points: values by axis, and what they set."""
+    for k, choice in enumerate(said.get("only", [])):
+        check_choice(choice, axes, f"{path}: only[{k}]")
+    points = []
+    for places in itertools.product(*(range(len(axis.values)) for axis in axes)):
+        values = {axis.name: axis.values[k] for axis, k in zip(axes, places)}
+        if "only" in said and not any(fits(values, choice) for choice in said["only"]):
+            continue
+        sets = {}
+        for axis, k in zip(axes, places):
+            sets.update(axis.sets[k])
+        points.append((values, sets))
+    return points
+
+
+# ---- a table of runs --------------------------------------------------------------------
+
+def cell(text):
+    try:
+        return json.loads(text)
+    except ValueError:
+        return text
+
+
+def read_table(path):
+    """The rows of a table of runs, as values by column; blank cells are left out."""
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            lines = list(csv.reader((line for line in file if line.strip() and not line.startswith("#")), delimiter="\t"))
+    except OSError as error:
+        refuse(66, f"{path}: {error.strerror}")
+    if len(lines) < 2:
+        refuse(65, f"{path}: must have a line of keys and a line for each run, with tabs between")
+    keys = [key.strip() for key in lines[0]]
+    for k, key in enumerate(keys):
+        check_key(key, f"{path}: column {k + 1}")
+        if key in keys[:k]:
+            refuse(65, f"{path}: column {k + 1}: {key}: is there twice")
+    rows = []
+    for number, line in enumerate(lines[1:], 1):
+        if len(line) != len(keys):
+            refuse(65, f"{path}: row {number}: has {len(line)} cells, the line of keys {len(keys)}")
+        row = {key: cell(text.strip()) for key, text in zip(keys, line) if text.strip()}
+        rows.append({key: value if key == "run" else check_value(key, value, f"{path}: row {number}") for key, value in row.items()})
+    return keys, rows
+
+
+def table_points(path, is_seed):
+    """Axes and points of a table of runs. Rows that differ in seeds alone are one point."""
+    keys, rows = read_table(path)
+    plain = [key for key in keys if not is_seed(key) and key != "run"]
+    varied = [key for key in plain if len({str(row.get(key)) for row in rows}) > 1]
+    names = {key: key if [k.split(".")[-1] for k in varied].count(key.split(".")[-1]) > 1 else key.split(".")[-1] for key in varied}
+    axes = [Axis(names[key], list(dict.fromkeys(row.get(key) for row in rows)), [], names[key]) for key in varied]
+    points, seeds = {}, []
+    for row in rows:
+        point = tuple(json.dumps(row.get(key)) for key in plain)
+        values = {names[key]: row.get(key) for key in varied}
+        points.setdefault(point, (len(points), values))
+        seeds.append((points[point][0], values, row))
+    return axes, [values for _, values in points.values()], seeds
+
+
+# ---- seeds ------------------------------------------------------------------------------
+
+def drawn_key(scene_of, sets, path):
+    """The seed of what the scene draws."""
+    for key, used in stages.DRAWN.items():
+        stage = key.split(".")[0]
+        section = json.loads(json.dumps(stages.sections(scene_of(stage)).get(stage, {})))
+        for name, value in sets.items():
+            if name.startswith(f"{stage}."):
+                place = section
+                *parts, last = name.split(".")[1:]
+                for part in parts:
+                    place = place.setdefault(part, {})
+                place[last] = value
+        if used(section):
+            return [key]
+    return refuse(65, f"{path}: seeds: the scene draws nothing (neither radii of throats nor grains nor strengths); "
+                  "seeds.keys says what takes them, packings gives other grains")
+
+
+def seeds_of(said, replaced, path):
+    """The seeds, [None] where there are none, and their keys where they are given."""
+    seeds = replaced or said.get("seeds")
+    given = said.get("seeds") if isinstance(said.get("seeds"), dict) else {}
+    for key in given.get("keys", []):
+        check_key(key, f"{path}: seeds.keys")
+    if seeds is None:
+        return [None], []
+    if isinstance(seeds, dict):
+        seeds = seeds.get("values") or seeds.get("count") or refuse(65, f"{path}: seeds: has neither count nor values")
+    return list(range(1, seeds + 1)) if isinstance(seeds, int) else list(dict.fromkeys(seeds)), given.get("keys", [])
+
+
+# ---- measures ---------------------------------------------------------------------------
+
+@dataclass
+class Measure:
+    kind: str
+    path: str
+    name: str
+    title: str
+    unit: str
+    scale: float
+
+
+def read_measure(said, where):
+    said = {"path": said} if isinstance(said, str) else said
+    kind, colon, path = said["path"].rpartition(":")
+    kind = kind if colon else "crackstats"
+    if kind not in stages.MADE:
+        refuse(65, f"{where}: {kind}: no such artifact{nearest(kind, stages.MADE)}")
+    name = said.get("name", path.strip("/").replace("/", ".").replace(" ", "."))
+    return Measure(kind, path, name, said.get("title", name), said.get("unit", ""), said.get("scale", 1))
+
+
+# ---- the whole --------------------------------------------------------------------------
+
+def read_file(path):
+    """What the file of a study says, with a table of runs in its place."""
+    if not os.path.isfile(path):
+        refuse(66, f"{path}: no such file")
+    if path.endswith((".tsv", ".txt")):
+        return {"runs": os.path.basename(path)}
+    try:
+        said = document(path)
+    except ValueError as error:
+        refuse(65, f"{path}: is not JSON: {error}; a table of runs ends in .tsv")
+    problem = wrong(said, document(f"{TREE}/schemas/study.json"))
+    if problem:
+        refuse(65, f"{path}: {problem.lstrip(': ')}")
+    if "axes" in said and "runs" in said:
+        refuse(65, f"{path}: has axes beside runs")
+    return said
+
+
+def count_first(said, axes, seeds, packings, path, most):
+    """Ends where there are more runs than anyone means."""
+    runs = math.prod(len(axis.values) for axis in axes) * len(seeds) * len(packings)
+    if "only" not in said and runs > most:
+        shape = " x ".join([f"{len(axis.values)} {axis.name}" for axis in axes] + [f"{len(seeds) * len(packings)} a point"])
+        refuse(65, f"{path}: {runs} runs ({shape}), more than {most}: fewer values, or MOST_RUNS={runs}")
+
+
+def table_runs(said, path, replaced, scene):
+    """Axes, points and runs of a table."""
+    table = located(said["runs"], path)
+    axes, points, rows = table_points(table, lambda key: key.endswith(".seed"))
+    seeds, keys = seeds_of(said, replaced, path)
+    runs = []
+    for number, (point, values, row) in enumerate(rows, 1):
+        sets = {key: value for key, value in row.items() if key not in SPECIAL}
+        of_row = row.get("scene", scene)
+        if not of_row:
+            refuse(65, f"{table}: row {number}: no scene: a column scene, or SCENE=")
+        here = keys or (drawn_key(lambda stage: of_row, sets, path) if seeds != [None] else [])
+        for seed in seeds:
+            own = next((v for k, v in sets.items() if k.endswith(".seed")), None) if seed is None else seed
+            runs.append(Run(len(runs) + 1, point, values, own, row.get("import"), {**said.get("set", {}), **sets, **{k: seed for k in here}},
+                            of_row, str(row.get("run", ""))))
+    return axes, points, runs
+
+
+def axes_runs(said, path, replaced, scene, most):
+    """Axes, points and runs of crossed axes."""
+    axes = [read_axis(axis, f"{path}: axes[{k}]") for k, axis in enumerate(said.get("axes", []))]
+    for k, axis in enumerate(axes):
+        if axis.name in [a.name for a in axes[:k]]:
+            refuse(65, f"{path}: axes[{k}]: {axis.name}: another axis has this name")
+    seeds, keys = seeds_of(said, replaced, path)
+    packings = [located(each, path) for each in said.get("packings", [])] or [said.get("import") and located(said["import"], path)]
+    count_first(said, axes, seeds, packings, path, most)
+    points, runs = crossed(said, axes, path), []
+    for number, (values, sets) in enumerate(points):
+        sets = {**said.get("set", {}), **sets}
+        of_point = sets.pop("scene", scene) or refuse(65, f"{path}: has no scene")
+        scene_of = lambda stage: of_point.get(stage, of_point.get("conditions")) if isinstance(of_point, dict) else of_point
+        keys = keys or (drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, path) if seeds != [None] else [])
+        for grains, seed in itertools.product(packings, seeds):
+            mine = {**sets, **({key: seed for key in keys} if seed is not None else {})}
+            runs.append(Run(len(runs) + 1, number, values, seed, mine.pop("import", grains), mine, of_point))
+    return axes, [values for values, _ in points], runs, keys
+
+
+def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
+    """The study of the file PATH; SEEDS, SCENE and SETS (pairs) take the place of its own."""
+    said = read_file(path)
+    said["set"] = {**said.get("set", {}), **dict(sets)}
+    for key, value in said["set"].items():
+        check_key(key, f"{path}: set")
+        said["set"][key] = check_value(key, value, f"{path}: set")
+    own = scene or said.get("scene")
+    if isinstance(own, dict):
+        for stage in own:
+            if stage not in stages.STAGES:
+                refuse(65, f"{path}: scene.{stage}: no such stage{nearest(stage, stages.STAGES)}")
+        own = {stage: located(each, path) for stage, each in own.items()}
+    elif own:
+        own = located(own, path)
+    measures = [read_measure(each, f"{path}: measure[{k}]") for k, each in enumerate(said.get("measure", CRACKS))]
+    keys = []
+    if "runs" in said:
+        axes, points, runs = table_runs(said, path, seeds, own)
+    else:
+        axes, points, runs, keys = axes_runs(said, path, seeds, own, most)
+    if len(runs) > most:
+        refuse(65, f"{path}: {len(runs)} runs, more than {most}: fewer values, or MOST_RUNS={len(runs)}")
+    for key in keys:
+        for run in runs:
+            check_value(key, run.seed, f"{path}: seeds")
+    for k, each in enumerate(said.get("compare", [])):
+        check_choice({each["axis"]: each["with"]}, axes, f"{path}: compare[{k}]")
+    for k, each in enumerate(said.get("reference", [])):
+        check_choice(each.get("at", {}), axes, f"{path}: reference[{k}].at")
+        if each["measure"] not in [m.name for m in measures]:
+            refuse(65, f"{path}: reference[{k}].measure: {each['measure']}: is not measured")
+    name = os.path.basename(path).rsplit(".", 1)[0]
+    return Study(os.path.realpath(path), name, said, axes, points, runs, measures, keys)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers out of artifacts: [ARTIFACT:]PATH as study.json has them."""
+import json
+import os
+import re
+
+import numpy as np
+
+from common import artifact
+
+TAKEN = {"first": lambda x: x.flat[0], "last": lambda x: x.flat[-1], "least": np.nanmin, "largest": np.nanmax, "mean": np.nanmean}
+
+
+def of_json(document, path):
+    """The member at PATH, names and numbers with points or slashes between; None: there is none."""
+    for name in re.split(r"[./]", path.strip("/")):
+        if isinstance(document, list) and re.fullmatch(r"-?\d+", name) and -len(document) <= int(name) < len(document):
+            document = document[int(name)]
+        elif isinstance(document, dict) and name in document:
+            document = document[name]
+        else:
+            return None
+    return document
+
+
+def of_hdf5(file, path):
+    """The attribute or dataset at PATH; after a dataset's a blank and what is taken of it."""
+    where, _, taken = path.partition(" ")
+    where = where.strip("/").replace(".", "/")
+    group, _, name = where.rpartition("/")
+    if (group or "/") in file and name in file[group or "/"].attrs:
+        return file[group or "/"].attrs[name].item()
+    if where not in file or not hasattr(file[where], "shape"):
+        return None
+    values = np.asarray(file[where][()])
+    if taken not in TAKEN and values.size != 1:
+        return None
+    return TAKEN.get(taken, lambda x: x.flat[0])(values).item() if values.size else None
+
+
+def number(value):
+    """VALUE as a number, None where it is none."""
+    if isinstance(value, bool):
+        return float(value)
+    return float(value) if isinstance(value, (int, float)) and value == value else None
+
+
+def measured(path, measures):
+    """The values of MEASURES, all of one kind, in the artifact at PATH; what it does not have is None."""
+    if path.endswith(".json"):
+        with open(path, encoding="utf-8") as file:
+            document = json.load(file)
+        each = document.get("each", [{}])[0]
+        take = lambda measure: next((v for v in (of_json(each, measure.path), of_json(document, measure.path)) if v is not None), None)
+        found = [number(take(measure)) for measure in measures]
+    else:
+        with artifact(path) as file:
+            found = [number(of_hdf5(file, measure.path)) for measure in measures]
+    return [None if value is None else value * measure.scale for value, measure in zip(found, measures)]
+
+
+def why(folder, path):
+    """What the stage said that failed to make PATH; "" where nothing did."""
+    note = os.path.join(folder, f"{path}.said")
+    if not os.path.exists(note):
+        return ""
+    with open(note, encoding="utf-8", errors="replace") as file:
+        lines = [line.strip() for line in file if line.strip()]
+    return lines[-1] if lines else "failed without a word"

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What came out: a table of all runs, and their summary."""
+import json
+import os
+
+from common import number, row, write
+from counts import probability, three
+from definition import fits, label_of
+from measure import measured, why
+from samples import compared, described
+
+
+def read_runs(plan, folder, stale=()):
+    """A row for each run: values of the axes, what was measured, and whether it is there: an artifact
+    that is STALE is not."""
+    study, cache = plan.study, {}
+    kinds = list(dict.fromkeys(m.kind for m in study.measures))
+    said = {path: why(folder, path) for path, artifact in plan.artifacts.items() if not artifact.folded}
+    rows = []
+    for run, made in zip(study.runs, plan.runs):
+        line = {"run": run.number, "point": run.point + 1, **run.values}
+        if run.label:
+            line["label"] = run.label
+        if run.grains:
+            line["grains"] = os.path.basename(run.grains)
+        if run.seed is not None:
+            line["seed"] = run.seed
+        results, missing = {}, ""
+        for kind in kinds:
+            path, mine = made[kind].path, [m for m in study.measures if m.kind == kind]
+            if path not in cache:
+                cache[path] = measured(os.path.join(folder, path), mine) if path not in stale else None
+            missing = missing or ("" if cache[path] else path)
+            results.update(zip((m.name for m in mine), cache[path] or [None] * len(mine)))
+        line.update({m.name: results[m.name] for m in study.measures})
+        failed = next((said[a.path] for a in made.values() if said.get(a.path)), "") if missing else ""
+        line["status"] = "failed" if failed else "not yet" if missing else "done"
+        line["why"] = failed
+        line["artifacts"] = {kind: a.path for kind, a in made.items() if not a.folded}
+        rows.append(line)
+    return rows
+
+
+def text_of(value):
+    if value is None:
+        return ""
+    return number(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else \
+        str(value).replace("\t", " ").replace("\n", " ") if isinstance(value, str) else json.dumps(value)
+
+
+def write_runs(rows, study, folder):
+    """runs.tsv and runs.json, a row a run."""
+    names = list(dict.fromkeys(name for line in rows for name in line if name != "artifacts"))
+    names = [n for n in names if n not in ("status", "why")] + ["status", "why"]
+    lines = ["\t".join(names)] + ["\t".join(text_of(line.get(name)) for name in names) for line in rows]
+    save(folder, "runs.tsv", "".join(f"{line}\n" for line in lines))
+    save(folder, "runs.json", json.dumps({"study": study.name, "runs": rows}, indent=1) + "\n")
+
+
+def save(folder, name, text):
+    """Whole, or not at all."""
+    path = os.path.join(folder, name)
+    with open(f"{path}.new", "w", encoding="utf-8") as file:
+        file.write(text)
+    os.replace(f"{path}.new", path)
+
+
+# ---- summary ----------------------------------------------------------------------------
+
+def summarise(rows, study):
+    """For each point what its runs have in common, and each measure over them; for each comparison its
+    tests."""
+    confidence = study.said.get("confidence", 0.95)
+    points = []
+    by_point = [[] for _ in study.points]
+    for line in rows:
+        by_point[line["point"] - 1].append(line)
+    for number_, (values, mine) in enumerate(zip(study.points, by_point), 1):
+        points.append({"point": number_, "values": values, "runs": len(mine), "done": sum(r["status"] == "done" for r in mine),
+                       "failed": sum(r["status"] == "failed" for r in mine),
+                       "measures": {m.name: described([r[m.name] for r in mine if r[m.name] is not None], confidence)
+                                    for m in study.measures},
+                       "reference": {r["measure"]: r["value"] for r in study.said.get("reference", []) if fits(values, r.get("at", {}))}})
+    tests = [test for said in study.said.get("compare", []) for test in comparisons(said, study, by_point)]
+    return {"study": study.name, "confidence": confidence, "points": points, "tests": tests}
+
+
+def comparisons(said, study, by_point):
+    """Each point of another value of the axis, with that which differs from it in this alone."""
+    axis, paired = said["axis"], said.get("paired", True)
+    for k, values in enumerate(study.points):
+        base = {**values, axis: said["with"]}
+        if values[axis] == said["with"] or base not in study.points:
+            continue
+        first, second = by_point[study.points.index(base)], by_point[k]
+        yield {"point": k + 1, "with": study.points.index(base) + 1, "axis": axis, "paired": paired,
+               "measures": {m.name: compared(*values_of(m.name, first, second, paired), paired) for m in study.measures}}
+
+
+def values_of(name, first, second, paired):
+    """The values of measure NAME of both groups of rows; paired: of seeds and grains that both have."""
+    if not paired:
+        return [r[name] for r in first if r[name] is not None], [r[name] for r in second if r[name] is not None]
+    key = lambda r: (r.get("seed"), r.get("grains"))
+    other = {key(r): r[name] for r in second if r[name] is not None}
+    pairs = [(r[name], other[key(r)]) for r in first if r[name] is not None and key(r) in other]
+    return [a for a, _ in pairs], [b for _, b in pairs]
+
+
+def write_summary(summary, study, folder):
+    """summary.json, summary.tsv (a row for each point and measure) and summary.md."""
+    save(folder, "summary.json", json.dumps(summary, indent=1) + "\n")
+    axes, statistics = [a.name for a in study.axes], ["runs", "mean", "sd", "low", "high"]
+    lines = ["\t".join(["point", *axes, "measure", *statistics, "reference"])]
+    for point in summary["points"]:
+        for name, values in point["measures"].items():
+            lines.append("\t".join([str(point["point"]), *(text_of(point["values"].get(a)) for a in axes), name,
+                                    *(text_of(values[s]) for s in statistics), text_of(point["reference"].get(name))]))
+    save(folder, "summary.tsv", "".join(f"{line}\n" for line in lines))
+    write(os.path.join(folder, "summary.md"), *markdown(summary, study))
+
+
+def cell(values, reference):
+    if values["mean"] is None:
+        return "-"
+    spread = "" if values["sd"] is None else f" ± {three(values['sd'])} ({three(values['low'])} to {three(values['high'])})"
+    return three(values["mean"]) + spread + (f" [{three(reference)}]" if reference is not None else "")
+
+
+def point_title(values, axes):
+    return ", ".join(label_of(values.get(a.name)) + (f" {a.unit}" if a.unit else "") for a in axes) or "all runs"
+
+
+def markdown(summary, study):
+    """Means ± standard deviations (intervals of the means) [numbers of others]; then the tests."""
+    axes = study.axes
+    yield row(*(a.title + (f", {a.unit}" if a.unit else "") for a in axes), "runs",
+              *(m.title + (f", {m.unit}" if m.unit else "") for m in study.measures))
+    yield "|---" * (len(axes) + 1 + len(study.measures)) + "|"
+    for point in summary["points"]:
+        runs = f"{point['done']}" + (f" of {point['runs']}" if point["done"] < point["runs"] else "")
+        yield row(*(label_of(point["values"].get(a.name)) for a in axes), runs,
+                  *(cell(values, point["reference"].get(name)) for name, values in point["measures"].items()))
+    if summary["tests"]:
+        yield from ["", *tests_table(summary, study)]
+
+
+def tests_table(summary, study):
+    yield "| beside | measure | difference | t test, p | ranks, p |"
+    yield "|---|---|---|---|---|"
+    for test in summary["tests"]:
+        title = " beside ".join(point_title(study.points[k - 1], study.axes) for k in (test["point"], test["with"]))
+        for name, found in test["measures"].items():
+            if found and found["difference"] is not None:
+                spread = f" ± {three(found['sd'])}" if found.get("sd") is not None else ""
+                p = [found[k] for k in found if k.endswith("_p")]
+                yield row(title, name, three(found["difference"]) + spread, *("-" if x is None else probability(x) for x in p))
