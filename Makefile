@@ -115,8 +115,12 @@ SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
 
 quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
 
+# The statistics of crackstats, for the programs of pipelines/.
+SAMPLES := $(BUILD)/lib/samples.so
+samples_sources := $(addprefix stages/lib/,statistics/sample.c statistics/paired.c basics/memory.c basics/status.c)
+
 .PHONY: all
-all: $(PROGRAMS) ## build every program (the default)
+all: $(PROGRAMS) $(SAMPLES) ## build every program (the default)
 
 # --- compile --------------------------------------------------------------------------
 
@@ -166,6 +170,10 @@ $(LIBRARY): $(library_objects) $(BUILD)/sources
 	$(archive)
 $(CORES): $(call object,$(core_sources)) $(BUILD)/sources
 	$(archive)
+
+$(SAMPLES): $(samples_sources) $(wildcard stages/lib/statistics/*.h) $(BUILD)/flags
+	$(call quiet,LINK,$(@F))mkdir -p $(@D) && $(CC) $(CPPFLAGS) $(filter-out -MMD -MP,$(CFLAGS)) -fPIC -shared \
+		$(filter %.c,$^) -lgsl -lgslcblas -lm -o $@
 
 define test_rules
 $(call test_programs,$1): $(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) \
@@ -233,7 +241,7 @@ study = $(eval .PHONY: $1)$(eval pipeline_goals += $1)$(eval $1: $2 ; \
 shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 
 # Others use what these two define.
-first_pipelines := $(wildcard pipelines/run/run.mk $(addprefix pipelines/studies/,networks-k/study.mk coupled/study.mk))
+first_pipelines := $(wildcard pipelines/run/run.mk pipelines/study/study.mk $(addprefix pipelines/studies/,networks-k/study.mk coupled/study.mk))
 include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/studies/*/study.mk))
 
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)

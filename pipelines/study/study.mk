@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Studies as data: runs of a scene with other values, measured and compared (docs/studies.md).
+#
+#     make study STUDY=mine.json          ->  build/runs/mine/summary.md, runs.tsv, figure.svg, study.html
+#     make study STUDY=runs.tsv SCENE=mine.json
+#     make study-table STUDY=mine.json    ->  tables of what is there, while another make is at it
+#     make strength SEEDS="1 2 3"         ->  a study of pipelines/studies, with other seeds
+#     make strength SET="force-protocol.force_scale=1 dem-replay.engine=quasi-static"
+
+STUDY ?=
+SEEDS ?=# in place of the study's own
+SET ?=# STAGE.KEY=VALUE, for all runs
+NAME ?=# of the folder, in place of the study's
+MOST_RUNS ?=
+
+study_words = --runs=$(call quoted,$(RUNS)) $(if $(strip $(SEEDS)),--seeds=$(call quoted,$(strip $(SEEDS)))) $(foreach \
+	s,$(SET),--set=$(call quoted,$s)) $(NAME:%=--name=$(call quoted,%)) $(MOST_RUNS:%=--most-runs=%) $(if $(strip $(SCENE)),--scene=$(SCENE))
+study_program = THREADS=$(call quoted,$(THREADS)) RUN=$(call quoted,$(RUN)) pipelines/study/study
+known_studies := $(basename $(notdir $(wildcard pipelines/studies/*.json)))
+
+.PHONY: study study-plan study-table $(known_studies)
+study: ## runs of a scene with other values: make study STUDY=mine.json
+study-plan: ## how many runs a study has, what they take, and what is missing
+study-table: ## tables of a study's runs so far
+study study-plan study-table: $(PROGRAMS) $(SAMPLES)
+	@+[[ -n $(call quoted,$(STUDY)) ]] || { echo 'Which study? make $@ STUDY=mine.json' >&2; exit 64; }; \
+		$(study_program) $(or $(patsubst study-%,%,$(filter study-%,$@)),make) $(call quoted,$(STUDY)) $(study_words)
+$(known_studies): $(PROGRAMS) $(SAMPLES)
+	@+$(study_program) make pipelines/studies/$@.json $(study_words)
