@@ -285,16 +285,16 @@ $(BUILD)/man/craquelure-%.1: $(BUILD)/bin/% tools/man-page VERSION
 $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 	@mkdir -p $(@D) && tools/completion $(PROGRAMS) tools/run >$@
 
-# What `craquelure run` and `demo` need, as it lies in the tree: all pipelines but the studies;
-# samples and documents.
-pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/*)))
+# What `craquelure run`, `demo` and `study` need, as it lies in the tree: all pipelines but studies that
+# are rules; samples and documents.
+pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/* study/* studies/*.json)))
 shared_scripts := tools/memo $(foreach f,$(pipeline_files),$(if $(suffix $f),,$f))
 shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.md docs/pages/* docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 
 # Under DESTDIR: the file to put there, where, and with what mode.
-installed := $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
+installed := $(SAMPLES):libexec/craquelure/lib/samples.so:644 $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
 	$(FRONT):bin/craquelure:755 $(foreach m,$(MAN),$m:share/man/man1/$(notdir $m):644) \
 	$(COMPLETION):share/bash-completion/completions/craquelure:644 \
 	tools/run:share/craquelure/run:755 \

@@ -363,7 +363,7 @@ def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
         for run in runs:
             check_value(key, run.seed, f"{path}: seeds")
     for k, each in enumerate(said.get("compare", [])):
-        check_choice({each["axis"]: each["with"]}, axes, f"{path}: compare[{k}]")
+        check_choice({each["axis"]: [each["with"], *([] if "of" not in each else each["of"] if isinstance(each["of"], list) else [each["of"]])]}, axes, f"{path}: compare[{k}]")
     for k, each in enumerate(said.get("reference", [])):
         check_choice(each.get("at", {}), axes, f"{path}: reference[{k}].at")
         if each["measure"] not in [m.name for m in measures]:

@@ -48,12 +48,9 @@ def write_reports(plan, rows, folder):
         words, here = [], True
         for run, made in firsts(plan, report):
             for kind in report.get("takes", []):
-                path = os.path.join(folder, made[kind].path)
+                path = os.path.join(folder, plan.groups[run.point].path if kind == "groups" else made[kind].path)
                 here = here and os.path.exists(path)
                 words.append(f"{point_title(run.values, plan.study.axes)}={path}" if report.get("titled") else path)
-        if plan.groups and not report.get("takes"):
-            words = [os.path.join(folder, group.path) for group in plan.groups]
-            here = all(map(os.path.exists, words))
         out = os.path.join(folder, report["out"])
         if not here:
             continue

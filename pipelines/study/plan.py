@@ -37,7 +37,7 @@ def before(kind):
 
 def kinds_wanted(study):
     """The kinds of artifacts that a study needs, in the order in which they are made."""
-    ends = [m.kind for m in study.measures] + [k for r in study.said.get("reports", []) for k in r.get("takes", [])]
+    ends = [m.kind for m in study.measures] + [k for r in study.said.get("reports", []) for k in r.get("takes", []) if k != "groups"]
     keep = study.said.get("keep", "all")
     ends += keep if keep != "all" else []
     ends += ["crackstats"] if study.said.get("groups") else []

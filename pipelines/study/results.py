@@ -90,7 +90,8 @@ def comparisons(said, study, by_point):
     axis, paired = said["axis"], said.get("paired", True)
     for k, values in enumerate(study.points):
         base = {**values, axis: said["with"]}
-        if values[axis] == said["with"] or base not in study.points:
+        of = said.get("of", values[axis])
+        if values[axis] == said["with"] or values[axis] not in (of if isinstance(of, list) else [of]) or base not in study.points:
             continue
         first, second = by_point[study.points.index(base)], by_point[k]
         yield {"point": k + 1, "with": study.points.index(base) + 1, "axis": axis, "paired": paired,
@@ -110,7 +111,7 @@ def values_of(name, first, second, paired):
 def write_summary(summary, study, folder):
     """summary.json, summary.tsv (a row for each point and measure) and summary.md."""
     save(folder, "summary.json", json.dumps(summary, indent=1) + "\n")
-    axes, statistics = [a.name for a in study.axes], ["runs", "mean", "sd", "low", "high"]
+    axes, statistics = [a.name for a in study.axes], ["runs", "mean", "sd", "low", "high", "least", "largest"]
     lines = ["\t".join(["point", *axes, "measure", *statistics, "reference"])]
     for point in summary["points"]:
         for name, values in point["measures"].items():

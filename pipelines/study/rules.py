@@ -39,8 +39,8 @@ def quoted(words):
 
 def stale_paths(made, folder):
     """Of the artifacts MADE, recipes by path, those that are stale, in their order."""
-    note = os.path.join(folder, ".study", f"recipes-{os.getpid()}")
-    with open(note, "w", encoding="utf-8") as file:
+    note = f".study/recipes-{os.getpid()}"
+    with open(os.path.join(folder, note), "w", encoding="utf-8") as file:
         file.writelines(f"{quoted(key)}\n" for key, _ in made.values())
     said = subprocess.run([MEMO, "check", note, ".study/digests"], cwd=folder, stdout=subprocess.PIPE, text=True,
                           env={**os.environ, "LC_ALL": "C"})

@@ -52,14 +52,14 @@ def call(name, *samples, confidence=None):
 
 
 def described(values, confidence=0.95):
-    """Number, mean, standard deviation, and the interval of the mean by Student's t; None where there
-    are too few."""
+    """Number, mean, standard deviation, the interval of the mean by Student's t, least and largest; None
+    where there are too few."""
     known = lambda x: None if x != x else x
     if not values:
-        return {"runs": 0, "mean": None, "sd": None, "low": None, "high": None}
+        return {"runs": 0} | dict.fromkeys(["mean", "sd", "low", "high", "least", "largest"])
     mean, half = call("sample_mean", values), call("half_width", values, confidence=confidence)
     return {"runs": len(values), "mean": mean, "sd": known(call("sample_deviation", values)),
-            "low": known(mean - half), "high": known(mean + half)}
+            "low": known(mean - half), "high": known(mean + half), "least": min(values), "largest": max(values)}
 
 
 def compared(one, other, paired):

@@ -27,3 +27,12 @@ study study-plan study-table: $(PROGRAMS) $(SAMPLES)
 		$(study_program) $(or $(patsubst study-%,%,$(filter study-%,$@)),make) $(call quoted,$(STUDY)) $(study_words)
 $(known_studies): $(PROGRAMS) $(SAMPLES)
 	@+$(study_program) make pipelines/studies/$@.json $(study_words)
+# Those that come with us, for `make help`.
+strength: ## K's Table 5.2 over 20 seeds (about three minutes)
+weibull: ## cracks against the scatter of strengths, 10 seeds (about ten minutes of one core)
+periodic: ## cracks in a box that repeats sideways, K's Table 5.3 and Fig. 5.24 (about two minutes)
+irregular: ## cracks in irregular aggregates of 1000 grains, pressure gradients on and off (minutes)
+monte-carlo: ## cracks over 10 realisations in both drying limits, tested against each other (minutes)
+soft: ## shrinkage and spring-back of the soft aggregate, and their picture
+force-history: ## the force of one contact over the drying, K's Fig. 5.12
+gradients: ## forces with liquid pressure gradients on and off, and their picture (seconds)

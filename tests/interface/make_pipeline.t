@@ -303,7 +303,7 @@ is 'in the environment as well' 2 \
     "$(IMPORT='a;touch PWN;' make -n run SCENE=$scene >/dev/null 2>&1; echo $?)"
 is 'SEEDS, THREADS: not run either' '' "$(make -n strength SEEDS='1;touch PWN' 2>&1 | grep memo)$(
     make -n run SCENE=$scene THREADS='1;touch PWN' 2>&1 | grep memo)"
-make -n soft SOFT_SET="a='\$(touch PWN)';touch PWN;'" DRY="x';touch PWN;'" >said 2>&1
+make -n soft SET="a='\$(touch PWN)';touch PWN;'" DRY="x';touch PWN;'" >said 2>&1
 is 'and nothing was run' '' "$(find . -name 'PWN*')"
 is 'nor is anything left behind' '' "$(find build -name 'recipes*')"
 for name in 'a,b' 'a@b+c' 'a~b^c' 'größe' '-a'; do

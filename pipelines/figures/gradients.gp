@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variables: tables, the folder of the tables that pipelines/studies/gradients/figure makes;
+# Variables: tables, the folder of the tables that pipelines/figures/gradients makes;
 # saturation, of the upper row.
 wide = 460; high = 470; low = 330; total = 40.0 + high + low; across = 30.0 + 2 * wide + 90
 set terminal @svg "Helvetica,14" size across, total

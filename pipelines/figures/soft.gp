@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variable: tables, the folder of the tables that pipelines/studies/soft/figure makes.
+# Variable: tables, the folder of the tables that pipelines/figures/soft makes.
 set terminal @svg "Helvetica,15" size 1000,960
 set multiplot
 unset key

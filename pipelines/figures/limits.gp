@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variables: tables, the folder of the tables that pipelines/studies/monte-carlo/figure makes; levels
+# Variables: tables, the folder of the tables that pipelines/figures/limits makes; levels
 # of saturation; p, of the three tests, with | between.
 set terminal @svg "Helvetica,15" size 1180,440
 set multiplot

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variables: tables, the folder of the tables that pipelines/studies/force-history/figure makes; strength of the
+# Variables: tables, the folder of the tables that pipelines/figures/force-history makes; strength of the
 # bond, nN.
 set terminal @svg "Helvetica,15" size 1000,380
 set multiplot

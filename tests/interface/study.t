@@ -1,0 +1,217 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Studies as data: runs that share what they have in common, tables and statistics as numpy and crackstats
+have them, what fails, and bad input."""
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, read, run, scratch
+
+STUDY = os.path.abspath("pipelines/study/study")
+folder = scratch()
+at = lambda *names: os.path.join(folder.name, *names)
+
+
+def write(name, content):
+    with open(at(name), "w", encoding="utf-8") as file:
+        file.write(content if isinstance(content, str) else json.dumps(content))
+    return at(name)
+
+
+def study(what, name, *words, status=0, **environment):
+    """What the study of file NAME says; artifacts made, by kind."""
+    ended = subprocess.run([STUDY, what, at(name), "--runs=runs", "-j2", *words], text=True, capture_output=True,
+                           cwd=folder.name, timeout=120, env={**os.environ, "MAKEFLAGS": "", "BIN": BIN, **environment})
+    made = [line.split()[1].split("/")[0] for line in ended.stdout.splitlines() if line.startswith("  RUN")]
+    counts = {kind: made.count(kind) for kind in dict.fromkeys(made)}
+    if ended.returncode != status:
+        print(f"# status {ended.returncode}: {ended.stderr}")
+    return ended.returncode == status, counts, ended.stdout, ended.stderr
+
+
+def table(name, file="runs.tsv"):
+    with open(at("runs", name, file), encoding="utf-8", newline="") as lines:
+        return list(csv.DictReader(lines, delimiter="\t"))
+
+
+def cracks_of(name, paths):
+    with open(at("runs", name, paths["crackstats"]), encoding="utf-8") as lines:
+        return json.load(lines)["cracks"]["total"]
+
+
+def column(rows, name, **values):
+    return [float(r[name]) for r in rows if all(r[k] == v for k, v in values.items())]
+
+
+with open(SCENE, encoding="utf-8") as lines:
+    scene = json.load(lines)
+scene["pack"]["counts"] = [3, 3, 4]
+scene["force-protocol"].update(steps=5, force_scale=2)
+scene["dem-replay"].update(cycles=20, snapshots=[1, 0])
+write("scene.json", scene)
+small = {"scene": "scene.json",
+         "axes": [{"key": "dry.liquid", "values": ["inviscid", "immobile"]},
+                  {"name": "strength", "keys": ["dem-replay.bond.normal_strength", "dem-replay.bond.shear_strength"],
+                   "values": [2000, 6000]}],
+         "seeds": 2, "compare": [{"axis": "liquid", "with": "inviscid"}]}
+write("small.json", small)
+
+# ---- runs share what they have in common, and numbers are those of the stages by themselves ----------
+
+fine, counts, said, _ = study("make", "small.json")
+ok(fine and counts == {"packing": 1, "tessellation": 1, "network": 1, "drying": 4, "forces": 4, "response": 8, "crackstats": 8},
+   "8 runs share packing, network, dryings and forces", counts)
+ok("8 runs, 4 points of 2; 27 of 27 artifacts to make" in said and "of one core and" in said,
+   "their number, time and disk are said before", said)
+rows = table("small")
+ok([r["status"] for r in rows] == ["done"] * 8, "a row a run")
+source, chain = None, [("pack", []), ("tessellate", []), ("merge-nodes", []), ("dry", ["liquid=immobile", "throat_radius.seed=2"]),
+                       ("force-protocol", []), ("dem-replay", ["bond.normal_strength=2000", "bond.shear_strength=2000"])]
+for stage, sets in chain:
+    words = [word for item in sets for word in ("--set", item)]
+    run(stage, "-q", "-p", at("scene.json"), *words, *([source] if source else []), "-o", at(f"{stage}.h5"))
+    source = at(f"{stage}.h5")
+cracks = json.loads(run("crackstats", "-q", "-p", at("scene.json"), source))["cracks"]["total"]
+ok(column(rows, "cracks.total", liquid="immobile", strength="2000", seed="2") == [cracks] and cracks > 0,
+   "a run counts what the stages count by themselves", cracks)
+fine, counts, said, _ = study("make", "small.json")
+ok(fine and not counts, "nothing is made again", counts)
+
+first = [r["cracks.total"] for r in rows if r["seed"] == "1"]
+summary = [r for r in table("small", "summary.tsv") if r["measure"] == "cracks.total"]
+values = column(rows, "cracks.total", liquid="immobile", strength="6000")
+mean, half = np.mean(values), 12.706204736174698 * np.std(values, ddof=1) / np.sqrt(2)  # Student's t, 1 degree, 95 %: tan(0.475 pi)
+ok(np.allclose([float(summary[3][k]) for k in ("mean", "low", "high")], [mean, mean - half, mean + half], rtol=1e-12),
+   "means and their intervals are numpy's and Student's", summary[3])
+with open(at("runs/small/runs.json"), encoding="utf-8") as lines:
+    records = json.load(lines)["runs"]
+groups = [[at("runs/small", r["artifacts"]["response"]) for r in records if r["liquid"] == liquid and r["strength"] == 6000]
+          for liquid in ("immobile", "inviscid")]
+tested = json.loads(run("crackstats", "-q", "--set", "first_group=2", "--set", "paired=true", *groups[0], *groups[1]))
+with open(at("runs/small/summary.json"), encoding="utf-8") as lines:
+    mine = json.load(lines)["tests"][1]["measures"]["cracks.total"]
+theirs = tested["test"]["cracks"]["total"]
+ok(mine["student_p"] == theirs["paired_t"]["p"] and mine["wilcoxon_p"] == theirs["wilcoxon"]["p"],
+   "tests are those of crackstats", f"{mine} {theirs}")
+ok(all(os.path.getsize(at("runs/small", name)) > 1000 for name in ("figure.svg", "study.html")), "a figure and a page")
+
+# ---- one value more, one value other, a table of runs -------------------------------------------------
+
+fine, counts, *_ = study("make", "small.json", "--seeds=1,2,3")
+ok(fine and counts == {"drying": 2, "forces": 2, "response": 4, "crackstats": 4}, "a seed more makes its runs alone", counts)
+write("runs.tsv", "run\tdry.liquid\tdem-replay.bond.normal_strength\tdem-replay.bond.shear_strength\tdry.throat_radius.seed\n"
+      + "".join(f"{liquid}-{strength}-{seed}\t{liquid}\t{strength}\t{strength}\t{seed}\n"
+                for liquid in ("inviscid", "immobile") for strength in (2000, 6000) for seed in (1,)))
+fine, *_ = study("make", "runs.tsv", "--scene=scene.json", "--name=table")
+spelled = table("table")
+ok(fine and [r["cracks.total"] for r in spelled] == first and spelled[0]["label"] == "inviscid-2000-1",
+   "a table of runs is the same study", spelled[:1])
+write("seeds.tsv", "dem-replay.friction\tdry.throat_radius.seed\n0.5\t1\n0.5\t2\n0.4\t1\n")
+ok("3 runs, 2 points of 1.5" in study("plan", "seeds.tsv", "--scene=scene.json")[2], "rows that differ in seeds alone are a point")
+write("lean.json", {**small, "seeds": 1, "keep": []})
+fine, counts, *_ = study("make", "lean.json")
+kept = sorted(os.listdir(at("runs/lean")))
+ok(fine and [r["cracks.total"] for r in table("lean")] == first and "response" not in kept,
+   "results alone, where nothing else is kept, are the same", f"{kept} {counts}")
+write("files.json", {"scene": "scene.json", "keep": [], "measure": [
+    "drying:summary/breakthrough_saturation", "network:throats/radius largest", {"path": "cracks.total", "scale": 10, "name": "ten"}]})
+fine, *_ = study("make", "files.json")
+only = table("files")[0]
+with open(at("runs/files/runs.json"), encoding="utf-8") as lines:
+    paths = json.load(lines)["runs"][0]["artifacts"]
+with h5py.File(at("runs/files", paths["drying"])) as drying, h5py.File(at("runs/files", paths["network"])) as network:
+    wanted = [drying["summary"].attrs["breakthrough_saturation"], network["throats/radius"][:].max(), 10 * cracks_of("files", paths)]
+ok(fine and [float(only[name]) for name in ("summary.breakthrough_saturation", "throats.radius.largest", "ten")] == wanted,
+   "attributes and datasets are measured too", only)
+
+# ---- a run that fails ---------------------------------------------------------------------------------
+
+write("replay", f"""#!/bin/bash
+[[ $1 == --version ]] && exec {BIN}/dem-replay --version
+if [[ -e {at('fails')} && "$*" == *normal_strength=6000* ]]; then echo 'dem-replay: no more' >&2; exit 3; fi
+exec {BIN}/dem-replay "$@"
+""")
+os.chmod(at("replay"), 0o755)
+write("fails", "")
+fine, counts, said, error = study("make", "small.json", "--seeds=1", "--name=failing", status=1, DEM_REPLAY=at("replay"))
+failing = table("failing")
+ok(fine and [r["status"] for r in failing] == ["done", "failed"] * 2 and failing[1]["why"] == "dem-replay: no more"
+   and failing[1]["cracks.total"] == "" and counts["crackstats"] == 2, "a failed run is a row that says why; the others are made", error)
+ok("2 done, 2 failed of 4 runs" in said and "run 2 failed: dem-replay: no more" in error, "and is said", said)
+os.remove(at("fails"))
+fine, counts, *_ = study("make", "small.json", "--seeds=1", "--name=failing", DEM_REPLAY=at("replay"))
+ok(fine and counts == {"response": 2, "crackstats": 2} and [r["cracks.total"] for r in table("failing")] == first,
+   "then it is made alone", counts)
+with open(at("runs/small/runs.json"), encoding="utf-8") as lines:
+    lost = json.load(lines)["runs"][0]["artifacts"]["crackstats"]
+os.remove(at("runs/small", lost))
+fine, counts, *_ = study("table", "small.json")
+ok(fine and not counts and table("small")[0]["status"] == "not yet" and table("small")[1]["status"] == "done",
+   "tables of what is there", table("small")[0])
+
+# ---- bad input: a line that says where, before anything is made ----------------------------------------
+
+def refused(title, status, wanted, name, content, *words):
+    write(name, content)
+    fine, counts, said, error = study("make", name, *words, status=status)
+    ok(fine and not counts and wanted in error and error.count("\n") == 1 and "Traceback" not in error, f"refused: {title}",
+       f"{error} {said}")
+
+
+values = list(range(1, 3001))
+refused("10^7 runs", 65, "9000000 runs (3000 seed x 3000 seed2 x 1 a point), more than 100000", "large.json",
+        {"scene": "scene.json", "axes": [{"key": "dry.throat_radius.seed", "values": values},
+                                         {"name": "seed2", "key": "dem-replay.bond.strength.seed", "values": values}]})
+refused("a key that no stage has", 65, "wrong.json: axes[0]: dry.liqid: dry has no such parameter; 'liquid'?", "wrong.json",
+        {**small, "axes": [{"key": "dry.liqid", "values": ["inviscid"]}]})
+refused("a stage that is none", 65, "no such stage; 'dem-replay'?", "wrong.json", {**small, "set": {"dem-reply.friction": 1}})
+refused("a key that a study has not", 65, "wrong.json: axis: no such key; 'axes'?", "wrong.json", {"scene": "scene.json", "axis": []})
+refused("a value out of range", 65, "axes[0], value 2: dem-replay.friction: must be at least 0, is -1", "wrong.json",
+        {**small, "axes": [{"key": "dem-replay.friction", "values": [0.1, -1]}]})
+write("misspelt.json", {**scene, "dem-replay": {**scene["dem-replay"], "frictoin": 1}})
+refused("a scene that a stage does not take", 65, "dem-replay.frictoin: unknown key", "wrong.json", {"scene": "misspelt.json"})
+head = "dem-replay.friction\tdry.throat_radius.seed\n"
+refused("a value in row 731", 65, "wrong.tsv: row 731: dem-replay.friction: must be at least 0, is -0.5", "wrong.tsv",
+        head + "".join(f"{-0.5 if k == 731 else 0.5}\t{k}\n" for k in range(1, 801)), "--scene=scene.json")
+refused("a missing column", 65, "wrong.tsv: row 2: has 1 cells, the line of keys 2", "wrong.tsv", head + "0.1\t1\n0.1\n", "--scene=scene.json")
+refused("a column of no key", 65, "wrong.tsv: column 1: friction: no such stage", "wrong.tsv", "friction\n0.1\n", "--scene=scene.json")
+refused("a table without a scene", 65, "row 1: no scene: a column scene, or SCENE=", "wrong.tsv", head + "0.1\t1\n")
+refused("two studies in one folder", 73, "runs/small: holds the study", "other.json", small, "--name=small")
+refused("a measure of no artifact", 65, "measure[0]: dryin: no such artifact; 'drying'?", "wrong.json", {**small, "measure": ["dryin:x"]})
+refused("lists of unequal length", 65, "has 1 values, dry.liquid 2", "wrong.json",
+        {**small, "axes": [{"zip": {"dry.liquid": ["inviscid", "immobile"], "dry.viscosity": [1]}}]})
+refused("an axis that is none", 65, "only[0].liqud: no such axis; 'liquid'?", "wrong.json", {**small, "only": [{"liqud": "inviscid"}]})
+lattice = {**scene, "dry": {**scene["dry"], "throat_radius": {"distribution": "network"}}}
+write("still.json", lattice)
+refused("seeds of a scene that draws nothing", 65, "the scene draws nothing", "wrong.json", {"scene": "still.json", "seeds": 2})
+refused("what is not JSON", 65, "is not JSON", "wrong.json", "{")
+ok(study("make", "nowhere.json", status=66)[0], "refused: a file that is not there")
+
+# ---- a disk that is full half-way ---------------------------------------------------------------------
+
+write("disk", f"""set -e
+mount -t tmpfs -o size=$1 none {at('full')}
+export MAKEFLAGS=
+{STUDY} make {at('lean.json')} --runs={at('full')} --seeds=1,2 -j2 >{at('first')} 2>&1 && exit 9
+mount -o remount,size=50m {at('full')}
+{STUDY} make {at('lean.json')} --runs={at('full')} --seeds=1,2 -j2 >{at('second')} 2>&1
+cp {at('full/lean/runs.tsv')} {at('after.tsv')}
+""")
+os.mkdir(at("full"))
+able = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", at("full")], capture_output=True).returncode == 0
+if able:
+    ended = subprocess.run(["unshare", "-rm", "bash", at("disk"), "200k"], capture_output=True, text=True, timeout=120)
+    first = read(at("first")).decode() if os.path.exists(at("first")) else ""
+    every = [line.split("\t") for line in read(at("after.tsv")).decode().splitlines()] if ended.returncode == 0 else []
+    ok(ended.returncode == 0 and "Traceback" not in first and len(every) == 9 and all(r[-2] == "done" for r in every[1:]),
+       "a disk that is full half-way: the same call goes on where there is room", f"{ended.returncode} {ended.stderr} {first[-600:]}")
+else:
+    print("# no name spaces here: the full disk is left out")
+done()
