@@ -116,8 +116,8 @@ SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
 quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
 
 # The statistics of crackstats, for the programs of pipelines/.
-SAMPLES := $(BUILD)/lib/samples.so
-samples_sources := $(addprefix stages/lib/,statistics/sample.c statistics/paired.c basics/memory.c basics/status.c)
+samples_sources := $(wildcard $(addprefix stages/lib/,statistics/sample.c statistics/paired.c basics/memory.c basics/status.c))
+SAMPLES := $(if $(samples_sources),$(BUILD)/lib/samples.so)
 
 .PHONY: all
 all: $(PROGRAMS) $(SAMPLES) ## build every program (the default)
@@ -294,7 +294,7 @@ shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.m
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 
 # Under DESTDIR: the file to put there, where, and with what mode.
-installed := $(SAMPLES):libexec/craquelure/lib/samples.so:644 $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
+installed := $(SAMPLES:%=%:lib/craquelure/samples.so:644) $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
 	$(FRONT):bin/craquelure:755 $(foreach m,$(MAN),$m:share/man/man1/$(notdir $m):644) \
 	$(COMPLETION):share/bash-completion/completions/craquelure:644 \
 	tools/run:share/craquelure/run:755 \

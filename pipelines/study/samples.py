@@ -30,7 +30,7 @@ RESULTS = {"sample_mean": double, "sample_deviation": double, "half_width": doub
 
 def load():
     """The library that `make all` builds, with the types of what its functions give."""
-    for folder in ("lib", "../lib"):
+    for folder in ("../lib", "../../lib/craquelure"): # in the tree; installed
         path = os.path.join(BIN, folder, "samples.so")
         if os.path.exists(path):
             library = ctypes.CDLL(path)

@@ -10,7 +10,8 @@ import numpy as np
 sys.path.insert(0, "tests")
 from tap import done, ok, run, scratch
 
-THROATS = ["nodes", "radius", "length", "kind", "volume"]
+THROATS = ["nodes", "radius", "length", "kind", "volume", "diffusive_conductance",
+           "hydraulic_conductance", "hydraulic_radius"]
 random = np.random.default_rng(5)
 
 
