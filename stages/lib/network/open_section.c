@@ -14,7 +14,7 @@
 //
 // Flow [Happel 1959; the profile of a duct]: a slice conducts as the duct between few
 // grains or as an array of rods would, whichever is more,
-//     duct  = pi/8 ((r_in + sqrt(area / pi)) / 2)^4,
+//     duct  = area r_in^2 / 8,
 //     array = polygon^3 s f(s) / rim^2,  s = 1 - area / polygon,
 //     f(s)  = -ln s - 3/2 + 2 s - s^2/2,
 //     slice = (duct^4 + array^4)^(1/4),
