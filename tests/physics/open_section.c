@@ -2,6 +2,7 @@
 // Open sections of throats against areas counted point by point, resistances against
 // Simpson's rule, and ducts of known resistance.
 #include "network/open_section.h"
+#include "network/inscribed_disc.h"
 
 #include "../test.h"
 
@@ -51,8 +52,12 @@ static struct open_section section_of(const struct triangle *triangle, double le
                      s = triangle->radius[j];
         const double reach = hypot(triangle->foot[0] - triangle->x[i],
                                    triangle->foot[1] - triangle->y[i]);
-        grain[i] =
-            (struct section_grain){angle(triangle, i), r, triangle->height, reach};
+        grain[i] = (struct section_grain){
+            angle(triangle, i),
+            r,
+            triangle->height,
+            reach,
+            {triangle->x[i] - triangle->foot[0], triangle->y[i] - triangle->foot[1]}};
         if (!(r + s > d)) continue;
         const double x = (d * d + r * r - s * s) / (2 * d);
         overlap[section.n_overlap++] =
@@ -208,13 +213,40 @@ static void test_units(void **state)
     assert_close(tiny.hydraulic_radius, unit * shape.hydraulic_radius, 1e-13);
 }
 
+// Discs that touch each other: Descartes' theorem on curvatures. And a disc that is
+// known to touch three others, wherever they lie.
+static void test_inscribed(void **state)
+{
+    (void)state;
+    const double a = 1, b = 0.4, c = 0.15, ab = a + b, ac = a + c, bc = b + c;
+    const double x = (ab * ab + ac * ac - bc * bc) / (2 * ab);
+    const double centre[3][2] = {{0, 0}, {ab, 0}, {x, sqrt(ac * ac - x * x)}};
+    const double radius[3] = {a, b, c}, k[3] = {1 / a, 1 / b, 1 / c};
+    const double inner =
+        k[0] + k[1] + k[2] + 2 * sqrt(k[0] * k[1] + k[1] * k[2] + k[2] * k[0]);
+    assert_close(inscribed_disc(centre, radius), 1 / inner, 1e-12);
+
+    const double disc = 0.37, turn[3] = {0.3, 2.2, 4.4}, around[3] = {1.3, 0.2, 0.05};
+    double placed[3][2];
+    for (int i = 0; i < 3; i++) {
+        placed[i][0] = 5 + (disc + around[i]) * cos(turn[i]);
+        placed[i][1] = -2 + (disc + around[i]) * sin(turn[i]);
+    }
+    assert_close(inscribed_disc(placed, around), disc, 1e-12);
+
+    const double in_line[3][2] = {{0, 0}, {1, 0}, {2, 0}};
+    assert_true(inscribed_disc(in_line, around) == 0);
+    const double wide[3] = {3, 3, 3}; // cover the gap
+    assert_true(inscribed_disc(placed, wide) == 0);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_areas), cmocka_unit_test(test_diffusion),
         cmocka_unit_test(test_prism), cmocka_unit_test(test_closed),
-        cmocka_unit_test(test_units),
+        cmocka_unit_test(test_units), cmocka_unit_test(test_inscribed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

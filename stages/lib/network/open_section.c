@@ -18,13 +18,16 @@
 //     array = polygon^3 s f(s) / rim^2,  s = 1 - area / polygon,
 //     f(s)  = -ln s - 3/2 + 2 s - s^2/2,
 //     slice = (duct^4 + array^4)^(1/4),
-// with r_in the disc around the throat's line that fits in. The exponent joins the two
-// limits as solutions for ducts between three and four discs do.
+// with r_in the disc that fits in: that between three grains, else the one around the
+// throat's line. The exponent joins the two limits as solutions for ducts between three
+// and four discs do.
 //
 // Wall collisions (Knudsen) add rim / (2 area) times a mean free path to the resistance
 // of each slice, so that a throat's radius for them is
 //     int dz / area  /  int rim / (2 area^2) dz.
 #include "network/open_section.h"
+
+#include "network/inscribed_disc.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -51,7 +54,7 @@ static const double WEIGHT[POINTS] = {0.171324492379170, 0.360761573048139,
 struct slices {
     double z[POINTS], area[POINTS];
     double rim[POINTS];       // of grains and walls, m
-    double inscribed[POINTS]; // radius of the disc around the throat's line, m
+    double inscribed[POINTS]; // radius of the disc that fits in, m
 };
 
 // The part of a disc beyond a chord at a distance APART from its centre: none, or all
@@ -88,6 +91,30 @@ static void block(struct slices *slices, const struct section_grain *grain)
         slices->rim[k] += grain->angle * rho;
         slices->inscribed[k] =
             clear < slices->inscribed[k] ? clear : slices->inscribed[k];
+    }
+}
+
+// Between grains of unequal sizes the widest place is not on the throat's line, where
+// clearances differ.
+static void widen_slices(const struct open_section *section, struct slices *slices)
+{
+    enum { GRAINS = 3 };
+    if (section->n_grain != GRAINS || section->wall > 0) return;
+    for (int k = 0; k < POINTS; k++) {
+        double centre[GRAINS][2], radius[GRAINS];
+        int blocking = 0;
+        for (int i = 0; i < GRAINS; i++) {
+            const struct section_grain *grain = &section->grain[i];
+            const double offset = slices->z[k] - grain->height;
+            const double rho2 = grain->radius * grain->radius - offset * offset;
+            centre[i][0] = grain->across[0];
+            centre[i][1] = grain->across[1];
+            radius[i] = sqrt(fmax(0, rho2));
+            blocking += rho2 > 0;
+        }
+        if (blocking == GRAINS)
+            slices->inscribed[k] =
+                fmax(slices->inscribed[k], inscribed_disc(centre, radius));
     }
 }
 
@@ -202,6 +229,7 @@ static void add_slices(const struct open_section *section, double from, double t
     for (int k = 0; k < POINTS; k++)
         slices.z[k] = from + half * (1 + ABSCISSA[k]);
     cut_slices(section, &slices);
+    widen_slices(section, &slices);
     for (int k = 0; k < POINTS; k++) {
         const double weight = half * WEIGHT[k], area = slices.area[k];
         if (!(area > 0)) {

@@ -12,10 +12,11 @@
 
 // One grain of the polygon.
 struct section_grain {
-    double angle;  // rad, of the polygon at its centre
-    double radius; // m
-    double height; // m, where along the throat its centre is
-    double reach;  // m, from its centre to the line of the throat
+    double angle;     // rad, of the polygon at its centre
+    double radius;    // m
+    double height;    // m, where along the throat its centre is
+    double reach;     // m, from its centre to the line of the throat
+    double across[2]; // m, its centre from that line, along two axes across the throat
 };
 
 // Two grains that overlap, or a grain that overlaps a wall: their sectors count what

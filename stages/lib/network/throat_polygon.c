@@ -68,6 +68,16 @@ static struct vector direction(const struct seen_face *face, int count)
     return size > 0 ? scale(1 / size, twice) : twice;
 }
 
+// A unit vector across the unit vector ALONG.
+static struct vector any_across(struct vector along)
+{
+    const double x = fabs(along.x), y = fabs(along.y), z = fabs(along.z);
+    const struct vector far = {x <= y && x <= z, y < x && y <= z, z < x && z < y};
+    const struct vector across = cross(along, far);
+    const double size = norm(across);
+    return size > 0 ? scale(1 / size, across) : across;
+}
+
 struct throat_polygon throat_polygon_init(int most)
 {
     return (struct throat_polygon){
@@ -99,8 +109,13 @@ static int add_angle(struct throat_polygon *polygon, const struct seen_face *fac
     while (k < section->n_grain && !(distance(polygon->centre[k], centre) < radius))
         k++;
     if (k == section->n_grain) {
-        const double reach = norm(subtract(centre, scale(height, along)));
-        section->grain[k] = (struct section_grain){0, radius, height, reach};
+        const struct vector across = subtract(centre, scale(height, along));
+        section->grain[k] = (struct section_grain){
+            0,
+            radius,
+            height,
+            norm(across),
+            {dot(across, polygon->axis[0]), dot(across, polygon->axis[1])}};
         polygon->centre[section->n_grain++] = centre;
     }
     section->grain[k].angle += angle;
@@ -161,6 +176,8 @@ void throat_polygon_fill(struct throat_polygon *polygon, const struct network *n
     section->wall = section->area = 0;
     const struct vector along = direction(polygon->face, count);
     section->length = fmax(0, dot(along_throat(network, throat), along));
+    polygon->axis[0] = any_across(along);
+    polygon->axis[1] = cross(along, polygon->axis[0]);
     for (int k = 0; k < count; k++)
         add_face(polygon, &polygon->face[k], along);
 }

@@ -11,6 +11,7 @@ struct throat_polygon {
     struct open_section section;
     struct seen_face *face;
     struct vector *centre; // of section.grain, from the throat's first node
+    struct vector axis[2]; // across the throat
 };
 
 // Room for throats with up to MOST sides; the caller frees it.
