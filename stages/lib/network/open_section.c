@@ -94,25 +94,28 @@ static void block(struct slices *slices, const struct section_grain *grain)
     }
 }
 
-// Between grains of unequal sizes the widest place is not on the throat's line, where
-// clearances differ.
+// Whether the disc around the throat's line is not the widest one: between three grains
+// of unequal sizes clearances differ there.
+static bool is_lopsided(const struct open_section *section)
+{
+    const struct section_grain *grain = section->grain;
+    return section->n_grain == 3 && !(section->wall > 0) &&
+           !(grain[0].radius == grain[1].radius && grain[0].radius == grain[2].radius);
+}
+
+// Takes the disc that touches all three grains where it is the wider one.
 static void widen_slices(const struct open_section *section, struct slices *slices)
 {
-    enum { GRAINS = 3 };
-    if (section->n_grain != GRAINS || section->wall > 0) return;
     for (int k = 0; k < POINTS; k++) {
-        double centre[GRAINS][2], radius[GRAINS];
-        int blocking = 0;
-        for (int i = 0; i < GRAINS; i++) {
+        double centre[3][2], radius[3];
+        for (int i = 0; i < 3; i++) {
             const struct section_grain *grain = &section->grain[i];
             const double offset = slices->z[k] - grain->height;
-            const double rho2 = grain->radius * grain->radius - offset * offset;
             centre[i][0] = grain->across[0];
             centre[i][1] = grain->across[1];
-            radius[i] = sqrt(fmax(0, rho2));
-            blocking += rho2 > 0;
+            radius[i] = sqrt(fmax(0, grain->radius * grain->radius - offset * offset));
         }
-        if (blocking == GRAINS)
+        if (radius[0] > 0 && radius[1] > 0 && radius[2] > 0)
             slices->inscribed[k] =
                 fmax(slices->inscribed[k], inscribed_disc(centre, radius));
     }
@@ -229,7 +232,7 @@ static void add_slices(const struct open_section *section, double from, double t
     for (int k = 0; k < POINTS; k++)
         slices.z[k] = from + half * (1 + ABSCISSA[k]);
     cut_slices(section, &slices);
-    widen_slices(section, &slices);
+    if (is_lopsided(section)) widen_slices(section, &slices);
     for (int k = 0; k < POINTS; k++) {
         const double weight = half * WEIGHT[k], area = slices.area[k];
         if (!(area > 0)) {
