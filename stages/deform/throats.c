@@ -144,6 +144,12 @@ static double void_of(const struct packing *packing)
     return packing_domain_volume(packing) - (1 - porosity) * product(edge);
 }
 
+static bool nothing_moved(const struct network *before, const struct network *after)
+{
+    return !memcmp(before->packing.position, after->packing.position,
+                   (size_t)before->packing.n_particle * sizeof(struct vector));
+}
+
 // Whether the volumes of NETWORK are what find_void_volumes gives.
 static bool has_shares_of_void(struct network network)
 {
@@ -185,9 +191,7 @@ enum status move_volumes(const struct network *before, bool changed,
                          struct network *after, struct reason *reason)
 {
     if (!before->throat_volume) return STATUS_OK;
-    if (!memcmp(before->packing.position, after->packing.position,
-                (size_t)before->packing.n_particle * sizeof(struct vector)))
-        return STATUS_OK;
+    if (nothing_moved(before, after)) return STATUS_OK;
     if (!changed && has_shares_of_void(*before))
         return find_void_volumes(after, reason);
     scale_volumes(before, after);
@@ -217,6 +221,7 @@ static bool has_shapes_of_void(struct network network)
 enum status move_shapes(const struct network *before, bool changed,
                         struct network *after, struct reason *reason)
 {
+    if (nothing_moved(before, after)) return STATUS_OK; // not even digits change
     if (!changed && has_shapes_of_void(*before))
         return find_throat_shapes(after, reason);
     for (int t = 0; t < before->n_throat; t++) {

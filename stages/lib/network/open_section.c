@@ -144,16 +144,33 @@ double open_area(const struct open_section *section, double z)
     return slices.area[0];
 }
 
+// f(1 - OPEN), Happel's profile, for the open share of a polygon: open^3 / 3 + open^4 /
+// 4
+// + ..., which the logarithm would lose where little is open.
+static double array_profile(double open)
+{
+    if (open > 0.25) {
+        const double solid = 1 - open;
+        return -log(solid) - 1.5 + 2 * solid - solid * solid / 2;
+    }
+    double sum = 0, power = open * open * open;
+    for (int k = 3; sum + power / k > sum; k++, power *= open)
+        sum += power / k;
+    return sum;
+}
+
 // What a slice of unit length conducts at unit viscosity, m4; HUGE_VAL without a rim.
+// Duct and array both grow as area, polygon and rim together: a polygon that is cut in
+// equal parts, as ties of the diagram cut it, conducts as before.
 static double slice_conductance(double polygon, double area, double rim,
                                 double inscribed)
 {
-    const double solid = 1 - area / polygon;
-    if (!(rim > 0) || !(solid > 0)) return HUGE_VAL;
-    const double radius = fmin(sqrt(area / M_PI), fmax(0, inscribed));
+    const double open = area / polygon;
+    if (!(rim > 0) || !(open < 1)) return HUGE_VAL;
+    const double radius = fmax(0, inscribed);
     const double duct = area * radius * radius / 8;
-    const double profile = -log(solid) - 1.5 + 2 * solid - solid * solid / 2;
-    const double array = polygon * polygon * polygon * solid * profile / (rim * rim);
+    const double array =
+        polygon * polygon * polygon * (1 - open) * array_profile(open) / (rim * rim);
     // Scaled by the larger one: fourth powers of m4 would underflow.
     const double more = duct > array ? duct : array;
     const double ratio = duct > array ? array / duct : duct / array;
@@ -233,9 +250,12 @@ static void add_slices(const struct open_section *section, double from, double t
         slices.z[k] = from + half * (1 + ABSCISSA[k]);
     cut_slices(section, &slices);
     if (is_lopsided(section)) widen_slices(section, &slices);
+    // Where each grain overlaps the next and no disc fits in, all of them overlap:
+    // lenses give their common part back too often.
+    const bool ring = section->n_overlap >= section->n_grain && !(section->wall > 0);
     for (int k = 0; k < POINTS; k++) {
         const double weight = half * WEIGHT[k], area = slices.area[k];
-        if (!(area > 0)) {
+        if (!(area > 0) || (ring && !(slices.inscribed[k] > 0))) {
             *sum = closed;
             return;
         }
