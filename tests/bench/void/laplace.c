@@ -17,7 +17,7 @@
 //
 // FLUXES.tsv gets the flux of every throat on the finest grid; PACKING.h5 then is the
 // network (support_regions.h). CELLS of the cube root of the volume along it, three
-// times, by default 96 136 192. Prints one line of JSON with D along x, y, z for each,
+// times, by default 128 181 256. Prints one line of JSON with D along x, y, z for each,
 // its limit and the error of this.
 #include "support_extrapolate.h"
 #include "support_multigrid.h"
@@ -157,7 +157,7 @@ int main(int argc, char **argv)
     if (argc != 2 && argc != 2 + RESOLUTIONS && argc != 3 + RESOLUTIONS)
         die(STATUS_USAGE, "usage: laplace PACKING.h5 [CELLS CELLS CELLS [FLUXES.tsv]]");
     const char *fluxes = argc > 2 + RESOLUTIONS ? argv[2 + RESOLUTIONS] : NULL;
-    int cells[RESOLUTIONS] = {96, 136, 192};
+    int cells[RESOLUTIONS] = {128, 181, 256};
     for (int r = 0; r < RESOLUTIONS && argc > 2; r++) {
         cells[r] = atoi(argv[2 + r]);
         if (cells[r] < 1 || cells[r] > 800 || (r > 0 && cells[r] <= cells[r - 1]))

@@ -10,7 +10,7 @@ s, the distance from O to the line through both centres (positive where O is on 
 grain's side), and x_i = (O - c_i).n_ij. Of the polygon of centres, at height z,
     A_T = sum over faces of d s / 2,     al_i = sum over the two faces at i of atan2(s, x_i),
     A(z) = A_T - sum over grains of al_i/2 max(0, r_i^2 - z^2)
-is open. In series, 1/g = integral of dz / A(z) (rule 2S).
+is open. In series, 1/g = integral of dz / A(z) (rule series).
 """
 import h5py
 import numpy as np
@@ -35,8 +35,9 @@ class Network:
             self.ends = get("throats/nodes")
             self.image = get("throats/image")
             self.throat_radius = get("throats/radius") / self.unit
-            self.stored = {name: get(f"throats/conductance/{name}")
-                           for name in ("diffusion", "flow")}
+            # Of diffusion in units of length, of flow in units of its cube.
+            self.stored = [get("throats/diffusive_conductance"),
+                           get("throats/hydraulic_conductance")]
             self.loops = [get(f"faces/{name}") for name in
                           ("offset", "nodes", "particles", "image", "node_image")]
         if self.image is None:
@@ -132,7 +133,7 @@ class Triangles:
 
 
 def series(network):
-    """Rule 2S."""
+    """The open section in series, by quadrature."""
     t = Triangles(network)
     z, weight = t.heights()
     area = t.open_area(z)
@@ -143,15 +144,29 @@ def series(network):
     return g
 
 
+def section(network):
+    """What tessellate found."""
+    return written(network, 0) / network.unit
+
+
+def section_flow(network):
+    return written(network, 1) / network.unit ** 3
+
+
+def written(network, which):
+    if network.stored[which] is None:
+        raise SystemExit("the network has no conductances: tessellate --set=conductance=section")
+    return network.stored[which]
+
+
 def cylinder(network):
     with np.errstate(divide="ignore"):
         return np.pi * network.throat_radius ** 2 / network.length
 
 
-def stored(network):
-    if network.stored["diffusion"] is None:
-        raise SystemExit("no /throats/conductance/diffusion")
-    return network.stored["diffusion"] / network.unit
+def cylinder_flow(network):
+    return cylinder(network) * network.throat_radius ** 2 / 8
 
 
-RULES = {"2S": series, "cylinder": cylinder, "dataset": stored}
+DIFFUSION = {"section": section, "series": series, "cylinder": cylinder}
+FLOW = {"section": section_flow, "cylinder": cylinder_flow}
