@@ -18,25 +18,25 @@ double bridge_table_force(const struct bridge_table *table, double volume, doubl
 // Sums the four terms of four forces, in the same order as above.
 static inline float4 sum_terms(float4 a, float4 b, float4 c, float4 d)
 {
-    const int4 even = {0, 2, 4, 6}, odd = {1, 3, 5, 7};
-    const float4 first = __builtin_shuffle(a, b, even) + __builtin_shuffle(a, b, odd);
-    const float4 last = __builtin_shuffle(c, d, even) + __builtin_shuffle(c, d, odd);
-    return __builtin_shuffle(first, last, even) + __builtin_shuffle(first, last, odd);
+    const float4 first = __builtin_shufflevector(a, b, 0, 2, 4, 6) +
+                         __builtin_shufflevector(a, b, 1, 3, 5, 7);
+    const float4 last = __builtin_shufflevector(c, d, 0, 2, 4, 6) +
+                        __builtin_shufflevector(c, d, 1, 3, 5, 7);
+    return __builtin_shufflevector(first, last, 0, 2, 4, 6) +
+           __builtin_shufflevector(first, last, 1, 3, 5, 7);
 }
 
 // Number m of row n becomes number n of row m.
 static inline void transpose(double4 row[4])
 {
-    const mask4 even = {0, 4, 2, 6}, odd = {1, 5, 3, 7};
-    const mask4 low = {0, 1, 4, 5}, high = {2, 3, 6, 7};
-    const double4 a = __builtin_shuffle(row[0], row[1], even),
-                  b = __builtin_shuffle(row[0], row[1], odd),
-                  c = __builtin_shuffle(row[2], row[3], even),
-                  d = __builtin_shuffle(row[2], row[3], odd);
-    row[0] = __builtin_shuffle(a, c, low);
-    row[1] = __builtin_shuffle(b, d, low);
-    row[2] = __builtin_shuffle(a, c, high);
-    row[3] = __builtin_shuffle(b, d, high);
+    const double4 a = __builtin_shufflevector(row[0], row[1], 0, 4, 2, 6),
+                  b = __builtin_shufflevector(row[0], row[1], 1, 5, 3, 7),
+                  c = __builtin_shufflevector(row[2], row[3], 0, 4, 2, 6),
+                  d = __builtin_shufflevector(row[2], row[3], 1, 5, 3, 7);
+    row[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+    row[1] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+    row[2] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+    row[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
 static inline double4 smaller(double4 a, double4 b)
