@@ -2,6 +2,10 @@
 // Radius expansion and domain contraction [K 3.1.1]: from loose points to a dense
 // packing, by grains that grow or by a box that contracts, more and more slowly.
 //
+// With an adapted step (dynamics.c) strains come at the same times as with a step of a
+// tenth of [K 4.47], `pace`, and are as large: what decides how dense grains jam is the
+// rate of strain over that of their rearrangement.
+//
 // Strain is the relative change of lengths, of all radii or of the box. It is applied
 // in small steps, with some cycles of dynamics in between. The stress is measured as
 //     scaled stress = mean stress 2 radius / pair_stiffness,
@@ -39,13 +43,15 @@ struct densification {
     double pair_stiffness, radius; // N/m, m by volume: the scale of pressure
     double target;                 // scaled stress being approached, 0: none
     double gone_on_at; // of a run that was stopped: the target it was at; 0 once met
+    double pace;       // s, the step that strains are timed by
+    double strains;    // done so far
 };
 
 // ---- stopping and going on ----------------------------------------------------------
 
 // The state of the protocol besides the engine, as the numbers of a checkpoint.
 struct protocol {
-    double most, jammed, target, growth;
+    double most, jammed, target, growth, strains;
     struct vector lower, upper, centre, cut_lower, cut_upper;
 };
 enum { PROTOCOL_NUMBERS = sizeof(struct protocol) / sizeof(double) };
@@ -57,6 +63,7 @@ static struct protocol protocol_now(const struct densification *d)
                              .jammed = d->jammed,
                              .target = d->target,
                              .growth = d->making->reached->growth,
+                             .strains = d->strains,
                              .lower = domain->lower,
                              .upper = domain->upper,
                              .centre = domain->centre,
@@ -81,6 +88,7 @@ static enum status restore_protocol(struct densification *d, struct reason *reas
     d->jammed = protocol.jammed > 0;
     d->target = d->gone_on_at = protocol.target;
     d->making->reached->growth = protocol.growth;
+    d->strains = protocol.strains;
     struct domain *domain = d->making->domain;
     d->making->packing->lower = domain->lower = protocol.lower;
     d->making->packing->upper = domain->upper = protocol.upper;
@@ -163,6 +171,21 @@ static double strain_for(double now, double target)
     return (target - now) / 1.2;
 }
 
+enum { CYCLES = 20 }; // of the pace, between two strains
+
+// Runs until the next strain. Every so often the step is adapted.
+static enum status run_a_while(struct densification *d, struct reason *reason)
+{
+    enum { ADAPT_EVERY = 25 };
+    const bool adapted = is_adapted(d->making->how);
+    const double cycles = CYCLES * (adapted ? d->pace / dem_time_step(d->dem) : 1);
+    const enum status status = dem_run(d->dem, (int64_t)fmax(1, rint(cycles)), reason);
+    d->strains++;
+    if (status == STATUS_OK && adapted && fmod(d->strains, ADAPT_EVERY) == 0)
+        adapt_step(d->dem, !d->jammed, 0);
+    return status;
+}
+
 // The largest strain of a step for which inertia is negligible at the stress TARGET:
 // with CYCLES time steps of a tenth of a contact's period the inertial number is about
 // 1e-3.
@@ -176,7 +199,8 @@ static double quasi_static_strain(double target)
 static void servo(struct densification *d, double now, double target)
 {
     const double flowing = 0.05;
-    if (now > 0.5 * target && dem_unbalanced_ratio(d->dem) < flowing) d->jammed = true;
+    if (!d->jammed && now > 0.5 * target && dem_unbalanced_ratio(d->dem) < flowing)
+        d->jammed = true;
     if (now > target) d->most = fmax(0.5 * d->most, quasi_static_strain(target));
     double by = d->jammed ? strain_for(now, target) : now < target ? d->most : 0;
     by = fmin(fmax(by, -d->most), d->most);
@@ -232,20 +256,20 @@ static void show_progress(struct densification *d)
 static enum status press(struct densification *d, double target, double tolerance,
                          struct reason *reason)
 {
-    enum { CYCLES = 20, OFTEN = 1000 };
+    enum { STOP_EVERY = 50, SHOW_EVERY = 25 };
     const struct dynamics_parameters *how = d->making->how;
     const double near = 0.01;
     d->target = target;
     while (dem_cycle(d->dem) < how->most_cycles) {
-        const enum status status = dem_run(d->dem, CYCLES, reason);
+        const enum status status = run_a_while(d, reason);
         if (status != STATUS_OK) return status;
         const double now = scaled_stress(d);
         const bool there = fabs(now / target - 1) < near;
         if (there && dem_unbalanced_ratio(d->dem) < tolerance) return STATUS_OK;
         servo(d, now, target);
-        if (d->jammed && dem_cycle(d->dem) % OFTEN == 0) stop_rattlers(d);
+        if (d->jammed && fmod(d->strains, STOP_EVERY) == 0) stop_rattlers(d);
         keep_protocol(d);
-        show_progress(d);
+        if (fmod(d->strains, SHOW_EVERY) == 0) show_progress(d);
     }
     return give_up(d, "stress over its scale", scaled_stress(d), target, reason);
 }
@@ -270,13 +294,13 @@ static enum status press_from_above(struct densification *d, double target,
 // they do not.
 static enum status rest(struct densification *d, struct reason *reason)
 {
-    enum { CYCLES = 100 };
+    enum { CYCLES_OF_REST = 100 };
     const struct dynamics_parameters *how = d->making->how;
-    const double still =
-        how->tolerance * d->radius / dem_time_step(d->dem); // a radius in 1e4 steps
+    const double still = how->tolerance * d->radius / d->pace; // a radius in 1e4 steps
     while (dem_cycle(d->dem) < how->most_cycles) {
-        const enum status status = dem_run(d->dem, CYCLES, reason);
+        const enum status status = dem_run(d->dem, CYCLES_OF_REST, reason);
         if (status != STATUS_OK) return status;
+        if (is_adapted(how)) adapt_step(d->dem, false, 0);
         const double ratio = dem_unbalanced_ratio(d->dem);
         if (ratio < how->tolerance && largest_speed(d->making, d->dem) < still)
             return STATUS_OK;
@@ -289,11 +313,10 @@ static enum status rest(struct densification *d, struct reason *reason)
 static enum status strain_to_porosity(struct densification *d, double porosity,
                                       struct reason *reason)
 {
-    enum { CYCLES = 20 };
     const double total = strain_to(d, 1 - porosity);
     for (double left = total; left > 1e-12;) {
         strain(d, fmin(left, d->most));
-        const enum status status = dem_run(d->dem, CYCLES, reason);
+        const enum status status = run_a_while(d, reason);
         if (status != STATUS_OK) return status;
         left = strain_to(d, 1 - porosity);
         progress_update(d->making->progress, 1 - left / total);
@@ -352,6 +375,20 @@ static double stiffness_for(const struct dynamics_parameters *how, double radius
         return 2 * how->value * 2 * radius / how->overlap;
     // So that the critical time step is of the order of a microsecond and one.
     return how->density * radius * radius * radius * 1e12;
+}
+
+// The step of K 4.47 times a tenth, for the mean mass; a fixed step is its own.
+static double pace_of(const struct densification *d)
+{
+    const struct making *making = d->making;
+    const struct packing *packing = making->packing;
+    if (!is_adapted(making->how)) return dem_time_step(d->dem);
+    double mass = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double r = packing->radius[i];
+        mass += making->how->density * (4 * M_PI / 3) * r * r * r / packing->n_particle;
+    }
+    return 0.1 * 2 * sqrt(mass / d->pair_stiffness);
 }
 
 // Scales all positions, and the box with them, by LENGTHS from its lower corner.
@@ -492,6 +529,7 @@ enum status densify(const struct making *making, int count, bool grow,
     const struct vector none = {0, 0, 0};
     status = start_dynamics(making, stiffness, making->how->safety, none, wall, n_wall,
                             &d.dem, reason);
+    if (status == STATUS_OK) d.pace = pace_of(&d);
     if (status == STATUS_OK) status = restore_protocol(&d, reason);
     if (status == STATUS_OK) status = reach_target(&d, reason);
     if (status == STATUS_OK) {

@@ -8,6 +8,9 @@
 // place; in the end the highest grain closes the box. Trap: at rest is the unbalanced
 // ratio of [K 4.20] below the tolerance, which is a mean; a single grain may still
 // fall. So no grain may be faster than a tenth of sqrt(2 g R).
+//
+// With an adapted step (dynamics.c) grains have landed when the ratio is below LANDED
+// and none is faster than sqrt(2 g R). From then on each has its own weight.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -98,29 +101,74 @@ static bool is_settled(const struct making *making, const struct dem *dem,
            largest_speed(making, dem) < 0.1 * typical_speed;
 }
 
-static enum status settle(const struct making *making, struct dem *dem,
-                          struct reason *reason)
+// The state of the settling besides the engine, as the numbers of a checkpoint.
+struct settling {
+    double done;   // between 0 and 1, for the progress bar
+    double landed; // 1: grains have
+};
+static const double LANDED = 0.01;
+enum { SETTLING_NUMBERS = sizeof(struct settling) / sizeof(double) };
+
+// Of a grain that has fallen by HEIGHT.
+static double fall_speed(const struct making *making, double height)
 {
-    enum { CHECK_EVERY = 500 };
-    const struct packing *packing = making->packing;
+    return sqrt(2 * making->how->gravity * height);
+}
+
+static double mean_radius(const struct packing *packing)
+{
     double radius = 0;
     for (int i = 0; i < packing->n_particle; i++)
         radius += packing->radius[i] / packing->n_particle;
-    const double typical_speed = sqrt(2 * making->how->gravity * radius);
-    double first = 0;
-    enum status status = restore_dynamics(making, dem, &first, 1, reason);
+    return radius;
+}
+
+// Adapts the step, and ends the fall from HEIGHT when it is over.
+static void follow(const struct making *making, struct dem *dem, double height,
+                   struct settling *settling)
+{
+    if (!is_adapted(making->how)) return;
+    const double slow = fall_speed(making, mean_radius(making->packing));
+    const bool falls = settling->landed == 0 && !(dem_unbalanced_ratio(dem) < LANDED &&
+                                                  largest_speed(making, dem) < slow);
+    if (!falls && settling->landed == 0) land_grains(dem);
+    settling->landed = !falls;
+    adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
+}
+
+static void show_progress(const struct making *making, const struct dem *dem,
+                          struct settling *settling)
+{
+    const double ratio = dem_unbalanced_ratio(dem);
+    if (!isfinite(ratio) || ratio <= 0) return;
+    // from 1 to the tolerance, by digits
+    const double done = log(fmin(ratio, 1)) / log(making->how->tolerance);
+    settling->done = fmax(settling->done, done);
+    progress_update(making->progress, settling->done);
+}
+
+// Grains fall from HEIGHT at most.
+static enum status settle(const struct making *making, double height, struct dem *dem,
+                          struct reason *reason)
+{
+    const bool adapted = is_adapted(making->how);
+    const int check_every = adapted ? 200 : 500;
+    const double typical_speed = fall_speed(making, mean_radius(making->packing));
+    struct settling settling = {.landed = !adapted};
+    enum status status =
+        restore_dynamics(making, dem, (double *)&settling, SETTLING_NUMBERS, reason);
     if (status != STATUS_OK) return status;
+    if (adapted && settling.landed > 0) land_grains(dem);
+    if (adapted && dem_cycle(dem) == 0)
+        adapt_step(dem, true, fall_speed(making, height));
     while (dem_cycle(dem) < making->how->most_cycles) {
-        status = dem_run(dem, CHECK_EVERY, reason);
+        status = dem_run(dem, check_every, reason);
         if (status != STATUS_OK) return status;
-        if (is_settled(making, dem, typical_speed)) return STATUS_OK;
-        const double ratio = dem_unbalanced_ratio(dem);
-        if (isfinite(ratio) && ratio > 0) { // from 1 to the tolerance, by digits
-            const double done = log(fmin(ratio, 1)) / log(making->how->tolerance);
-            first = fmax(first, done);
-            progress_update(making->progress, first);
-        }
-        keep_dynamics_if_due(making, dem, &first, 1);
+        if (settling.landed > 0 && is_settled(making, dem, typical_speed))
+            return STATUS_OK;
+        follow(making, dem, height, &settling);
+        show_progress(making, dem, &settling);
+        keep_dynamics_if_due(making, dem, (const double *)&settling, SETTLING_NUMBERS);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "not settled after %lld cycles: unbalanced ratio %.3g, largest speed "
@@ -173,7 +221,8 @@ enum status deposit(const struct making *making, int count, struct reason *reaso
     status = start_dynamics(making, stiffness_for(making), making->how->safety, down,
                             wall, n_wall, &dem, reason);
     if (status == STATUS_OK) status = check_fall(making, &tall, dem, reason);
-    if (status == STATUS_OK) status = settle(making, dem, reason);
+    if (status == STATUS_OK)
+        status = settle(making, tall.upper.z - tall.lower.z, dem, reason);
     if (status == STATUS_OK) {
         making->reached->growth = 1;
         take_grains(making, dem);

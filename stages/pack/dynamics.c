@@ -8,6 +8,11 @@
 //     solid        = sum of (4/3) pi r^3 / domain volume  (discs: pi r^2 thickness).
 // Without gravity every grain gets the inertia of the mean one (density_scaling), so
 // that small grains do not shorten the time step.
+//
+// A fixed step is a share of [K 4.47]. An adapted one is ADAPTED_SHARE of the stability
+// limit (dem/relaxation.c), found again as contacts form, and under gravity
+//     inertia = max(m, mean m).
+// While grains fall, weights are in proportion to it; at rest each has its own.
 #include "dynamics.h"
 
 #include "basics/memory.h"
@@ -144,6 +149,24 @@ double drawn_fraction(const struct making *making, int count)
     return fraction;
 }
 
+// The limit is a bound; the rest is for contacts that form before it is found again.
+static const double ADAPTED_SHARE = 0.95;
+
+bool is_adapted(const struct dynamics_parameters *how)
+{
+    return isnan(how->safety);
+}
+
+void adapt_step(struct dem *dem, bool fall, double speed)
+{
+    dem_adapt_time_step(dem, ADAPTED_SHARE, !fall, speed);
+}
+
+void land_grains(struct dem *dem)
+{
+    dem_set_least_mass(dem, 1, false);
+}
+
 // Damping ratio and stiffness are the same in all methods; what differs is gravity,
 // walls and the safety of the step.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
@@ -167,8 +190,12 @@ enum status start_dynamics(const struct making *making, double stiffness, double
         .time_step_safety = safety,
         .threads = how->threads};
     const enum status status = dem_create(dem, &setup, reason);
-    if (status == STATUS_OK) making->reached->stiffness = stiffness;
-    return status;
+    if (status != STATUS_OK) return status;
+    making->reached->stiffness = stiffness;
+    if (!isnan(safety)) return STATUS_OK;
+    if (!statics) dem_set_least_mass(*dem, 1, true);
+    adapt_step(*dem, true, 0);
+    return STATUS_OK;
 }
 
 // PROTOCOL is what a method must remember besides the engine: COUNT numbers of its own.
@@ -265,7 +292,7 @@ void note_end(const struct making *making, const struct dem *dem)
     reached->unbalanced_ratio = dem_unbalanced_ratio(dem);
     reached->cycles += dem_cycle(dem);
     reached->time_step = dem_time_step(dem);
-    reached->time += (double)dem_cycle(dem) * dem_time_step(dem);
+    reached->time += dem_time(dem);
     reached->largest_speed = largest_speed(making, dem);
     reached->pressure = mean_stress(making, dem);
     const double porosity = 1 - solid_fraction(making->domain, making->packing);

@@ -33,7 +33,7 @@ struct dynamics_parameters {
     double damping;       // of the dashpots: damping ratio [K 4.28]
     double local_damping; // share of the net force and moment (dem/dem.h)
     double gravity;       // m/s2, downwards
-    double safety;        // of the time step [K 4.47]
+    double safety;        // of the time step [K 4.47]; null: adapted [dynamics.c]
     int target;           // enum target
     double value;         // of it
     double tolerance;     // on the unbalanced ratio [K 4.20] at rest
@@ -115,10 +115,23 @@ double solid_fraction(const struct domain *domain, const struct packing *packing
 double drawn_fraction(const struct making *making, int count);
 
 // An engine on the packing, between WALLS; STIFFNESS in N/m. SAFETY: of the time step
-// [K 4.47]. The caller frees *DEM with dem_free, also after a failure.
+// [K 4.47]; NAN: the step is adapted, and under gravity no grain has less inertia than
+// the mean one, nor, until land_grains, less weight. The caller frees *DEM with
+// dem_free, also after a failure.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
+
+// Whether the step is adapted; if so the caller calls adapt_step every few hundred
+// cycles.
+bool is_adapted(const struct dynamics_parameters *how);
+
+// Adapts the step of DEM to the contacts of now and to grains of SPEED (m/s) or, if
+// some are, faster; while grains FALL, to contacts that may form.
+void adapt_step(struct dem *dem, bool fall, double speed);
+
+// Gives grains that have fallen their own weight.
+void land_grains(struct dem *dem);
 
 // Restores the checkpoint of a run like this one, if there is one: the engine's state
 // to DEM, the array "protocol" to the COUNT doubles PROTOCOL. STATUS_BAD_DATA: it is

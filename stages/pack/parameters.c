@@ -131,8 +131,12 @@ const struct parameter pack_table[] = {
          "the force, added while it moves against it, so that it comes to rest"},
     {"dynamics.gravity", PARAMETER_NUMBER, "m/s2", "9.81", AT(dynamics.gravity),
      ABOVE(0), .text = "downwards along z, in deposition"},
-    {"dynamics.time_step_safety", PARAMETER_NUMBER, "1", "0.1", AT(dynamics.safety),
-     BETWEEN(1e-6, 1), .text = "time step over the critical one [K 4.47]"},
+    {"dynamics.time_step_safety", PARAMETER_NUMBER, "1", "null", AT(dynamics.safety),
+     BETWEEN(1e-6, 1),
+     .text =
+         "time step over the critical one of two grains [K 4.47], fixed; null: near "
+         "the stability limit of the contacts as they form, and no grain has less "
+         "inertia than the mean one (explosive_repulsion: 0.1)"},
     {"dynamics.tolerance", PARAMETER_NUMBER, "1", "1e-4", AT(dynamics.tolerance),
      BETWEEN(1e-12, 1), .text = "unbalanced ratio at rest [K 4.20]"},
     {"dynamics.most_cycles", PARAMETER_INTEGER, "1", "3000000",

@@ -275,6 +275,18 @@ void dem_set_group_motion(struct dem *dem, int group, struct vector velocity,
 void dem_set_friction(struct dem *dem, double friction);
 void dem_set_local_damping(struct dem *dem, double share);
 
+// For statics [relaxation.c]: no grain has less inertia than SHARE of the mean grain's,
+// from now on, also when grains grow. If they FALL, weights are in proportion to it, so
+// that all fall alike, and in all are what they were; else each has its own. At 0 all
+// is as it was.
+void dem_set_least_mass(struct dem *dem, double share, bool falls);
+
+// Sets the time step to SHARE, in (0,1), of the stability limit: of grains that touch
+// NOW, or of all near each other; and so short that none moves far in one step, at its
+// speed or at SPEED (m/s). It stays until the next call, so whoever calls it for NOW
+// must do so again as contacts form. O(pairs).
+void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed);
+
 // Stretches the box with all centres along x, y and z about its lower corner, and
 // scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
 // are. Its work counts as gained, but for contacts with walls, which stay. Returns

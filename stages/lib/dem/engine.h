@@ -177,6 +177,7 @@ struct dem {
     double time_step;
     double time_step_limit;
     bool step_is_automatic, step_was_shortened;
+    bool step_is_adapted;    // by dem_adapt_time_step
     double automatic_share;  // of the limit
     double time_before;      // simulated until the time step last changed
     int64_t step_since;      // the cycle at which it did
@@ -206,6 +207,8 @@ struct dem {
     uint8_t *group_of;          // (n_particle) 1 + its group, or 0; NULL: no groups
     struct vector *lever; // (n_particle) from the point of its group, at the start
     bool density_scaling;
+    double least_mass; // over the mean mass; 0: none
+    bool falls_alike;  // weights in proportion to inertia, as much in all
     double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
     bool unstressed;         // overlaps at the start count as none
@@ -445,6 +448,9 @@ struct motion load_on_grain(const struct dem *dem, int particle);
 // The largest stable time step [stability.c]: of all pairs in the list, or if NOW only
 // of those that touch, at the overlaps they have. Scaled.
 double stability_limit(const struct dem *dem, bool now);
+// The lesser of it and of that of two equal grains that meet, with local damping
+// counted at each spring and dashpot [relaxation.c]; finite.
+double sharp_stability_limit(const struct dem *dem, bool now);
 // AUTOMATIC_SHARE of it, or of that of two equal grains that meet, if that is less.
 double automatic_time_step(const struct dem *dem);
 // Shortens an automatic step that is too long for the pairs that have been found.

@@ -161,11 +161,16 @@ void set_masses(struct dem *dem, const uint8_t *fixed)
         dem->largest_radius = fmax(dem->largest_radius, dem->place[i].radius);
         dem->smallest_radius = fmin(dem->smallest_radius, dem->place[i].radius);
     }
+    double heavy = 0;
+    for (int i = 0; i < n; i++)
+        heavy += fmax(dem->weight[i], dem->least_mass * sum / n);
     for (int i = 0; i < n; i++) {
         const bool holds =
             fixed ? fixed[dem->id[i]]
                   : dem->mass[i] > 0 && dem->mobility[i][0] <= 0; // as it was
-        dem->mass[i] = dem->density_scaling ? sum / n : dem->weight[i];
+        const double own = dem->weight[i], least = dem->least_mass * sum / n;
+        dem->mass[i] = dem->density_scaling ? sum / n : fmax(own, least);
+        if (dem->falls_alike) dem->weight[i] = dem->mass[i] * (sum / heavy);
         if (holds)
             dem->mobility[i][0] = dem->mobility[i][1] = 0;
         else

@@ -222,12 +222,13 @@ static enum status check_rest(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
-// Takes a time step that the kept run had shortened, but only if this run chooses its
-// step too and it is shorter.
+// Takes a time step that the kept run had adapted, or had shortened, but only if this
+// run chooses its step too and, unless adapted, it is shorter.
 static void take_time_step(struct dem *dem, double chosen)
 {
     if (!dem->step_was_shortened) return;
-    const bool stays = dem->step_is_automatic && dem->time_step < chosen;
+    const bool stays =
+        dem->step_is_adapted || (dem->step_is_automatic && dem->time_step < chosen);
     dem->step_was_shortened = stays;
     if (stays)
         dem->time_step_limit = dem->time_step / dem->automatic_share;

@@ -221,17 +221,18 @@ static void add_contacts(const struct dem *dem, int particle, bool now,
 }
 
 // Limit of one grain, but at most LEAST, the limit of the others: most grains are let
-// go by the first bounds, which cost little.
-static double grain_limit(const struct dem *dem, int particle, bool now, double least)
+// go by the first bounds, which cost little. Springs and dashpots count HARDER times.
+static double grain_limit(const struct dem *dem, int particle, bool now, double harder,
+                          double least)
 {
     struct powers stiffness = {.logarithm = 0}, damping = {.logarithm = 0};
     add_contacts(dem, particle, now, &stiffness.block, &damping.block);
-    if (largest_step(trace(&stiffness.block), trace(&damping.block)) >
+    if (largest_step(harder * trace(&stiffness.block), harder * trace(&damping.block)) >
         least * (1 + 1e-9))
         return least;
     for (int n = 0;; n++) {
-        const double limit = largest_step(eigenvalue_bound(&stiffness, n),
-                                          eigenvalue_bound(&damping, n));
+        const double limit = largest_step(harder * eigenvalue_bound(&stiffness, n),
+                                          harder * eigenvalue_bound(&damping, n));
         if (n == SQUARINGS) return fmin(least, limit);
         if (limit > least * (1 + 1e-9)) return least;
         square(&stiffness);
@@ -247,7 +248,7 @@ static double limit_up_to(const struct dem *dem, bool now, double most)
     const double weaker = 1 + dem->local_damping;
     double limit = most * weaker;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = grain_limit(dem, i, now, limit);
+        limit = grain_limit(dem, i, now, 1, limit);
     return limit / weaker;
 }
 
@@ -257,7 +258,7 @@ double stability_limit(const struct dem *dem, bool now)
 }
 
 // Limit for two grains like this one in contact, whether any is near or not.
-static double two_grain_limit(const struct dem *dem, int particle)
+static double two_grain_limit(const struct dem *dem, int particle, double harder)
 {
     const double radius = dem->place[particle].radius;
     const double *mobility = dem->mobility[particle];
@@ -271,17 +272,28 @@ static double two_grain_limit(const struct dem *dem, int particle)
         &rolling, secant(dem, pair_law(dem, particle, particle), overlap));
     const double c = rolling_damping(dem, &rolling, overlap);
     return largest_step(
-        fmax(fmax(along * law.normal_stiffness, across * law.shear_stiffness),
-             2 * mobility[1] * k),
-        fmax(fmax(along * law.normal_damping, across * law.shear_damping),
-             2 * mobility[1] * c));
+        harder * fmax(fmax(along * law.normal_stiffness, across * law.shear_stiffness),
+                      2 * mobility[1] * k),
+        harder * fmax(fmax(along * law.normal_damping, across * law.shear_damping),
+                      2 * mobility[1] * c));
+}
+
+double sharp_stability_limit(const struct dem *dem, bool now)
+{
+    const double harder = 1 + dem->local_damping;
+    double limit = INFINITY;
+    for (int i = 0; i < dem->n_particle; i++) {
+        limit = grain_limit(dem, i, now, harder, limit);
+        limit = fmin(limit, two_grain_limit(dem, i, harder));
+    }
+    return isinf(limit) ? 1 : limit;
 }
 
 double automatic_time_step(const struct dem *dem)
 {
     double limit = dem->time_step_limit;
     for (int i = 0; i < dem->n_particle; i++)
-        limit = fmin(limit, two_grain_limit(dem, i) / (1 + dem->local_damping));
+        limit = fmin(limit, two_grain_limit(dem, i, 1) / (1 + dem->local_damping));
     return dem->automatic_share * (isinf(limit) ? 1 : limit);
 }
 
