@@ -18,7 +18,7 @@
 #include <string.h>
 #include <zlib.h>
 
-struct arrays arrays_new(void)
+struct arrays arrays_init(void)
 {
     return (struct arrays){.list = json_array()};
 }

@@ -15,7 +15,7 @@ struct arrays {
     json_t *list; // [{"name", "count", "planes", "delta", "float"}, ...] in that order
 };
 
-struct arrays arrays_new(void);
+struct arrays arrays_init(void);
 void arrays_free(struct arrays *arrays);
 
 // VALUE (COUNT) in as few planes as the largest needs. RISING: differences of

@@ -68,7 +68,7 @@ static void report_run(const struct invocation *invocation,
 {
     struct run run = run_of_paths(invocation->inputs, invocation->n_input);
     struct course course = course_of(&run, (int)parameters->rows);
-    struct arrays arrays = arrays_new();
+    struct arrays arrays = arrays_init();
     struct shown_body body =
         put_body(&arrays, &run, &course, moments_for(&run, parameters->moments));
     put_course(&arrays, &course, &run);

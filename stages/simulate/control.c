@@ -145,7 +145,7 @@ static void move_wall(const struct scene *scene, double time, struct dem *dem, i
         dem_set_servo(dem, w, factor * wall->servo_force);
 }
 
-// The return value is dropped: make_scene refused bonds and driven groups, and radii do
+// The return value is dropped: scene_init refused bonds and driven groups, and radii do
 // not grow, so there is nothing left to refuse.
 static void strain_box(const struct simulate_parameters *parameters, struct dem *dem)
 {

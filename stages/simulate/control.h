@@ -21,7 +21,7 @@ double mean_factor(const struct time_table *table, double time, double span);
 
 // Sets motions and servos for TIME, s, and strains the box for CONTROL_EVERY cycles.
 // Call it when dem_cycle is a multiple of CONTROL_EVERY, before these cycles run. TIME
-// is that of the beginning of the span, dem_time(DEM). It cannot fail: make_scene has
+// is that of the beginning of the span, dem_time(DEM). It cannot fail: scene_init has
 // refused all scenes that DEM would refuse to strain.
 void control(const struct simulate_parameters *parameters, const struct scene *scene,
              double time, struct dem *dem);

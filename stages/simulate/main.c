@@ -89,7 +89,7 @@ static void read_scene(const struct simulate_parameters *parameters,
                                   : NULL;
     struct reason reason;
     const enum status status =
-        make_scene(parameters, packing, velocity, scene, &reason);
+        scene_init(parameters, packing, velocity, scene, &reason);
     if (status) die(status, "%s", reason.text);
     free(velocity);
 }

@@ -109,7 +109,7 @@ extern const struct parameter simulate_table[];
 
 // Checks what no single row can say. Exits 65. What depends on two parameters at once:
 // lists of one length, times that rise, servos, the elastic constants that the law
-// needs. What depends on the packing or on names is make_scene's. On the first fault it
+// needs. What depends on the packing or on names is scene_init's. On the first fault it
 // writes one line with the key to stderr.
 void check_parameters(const struct simulate_parameters *parameters);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every column is declared once, in make_record, and filled by name; a name that is not
+// Every column is declared once, in record_init, and filled by name; a name that is not
 // declared is not recorded. So the choice of what to record stands in one place, and a
 // new column is a line there and a line where its numbers are known.
 //
@@ -66,7 +66,7 @@ static void declare_sums(struct record *record,
     declare(record, "/history/dissipation", ARRAY_FLOAT64, 5);
 }
 
-struct record make_record(const struct simulate_parameters *parameters,
+struct record record_init(const struct simulate_parameters *parameters,
                           const struct scene *scene)
 {
     struct record record = {0};

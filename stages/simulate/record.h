@@ -22,7 +22,7 @@ struct recorded_column {
     void *data;
 };
 
-// More than make_record declares; a new column needs no other place than that function.
+// More than record_init declares; a new column needs no other place than that function.
 enum { MOST_COLUMNS = 48 };
 struct record {
     int n_column;
@@ -33,7 +33,7 @@ struct record {
 // Empty columns for SCENE; free with record_free. Which columns there are follows from
 // SCENE and PARAMETERS alone (liquid, energy), so a run that goes on from a checkpoint
 // declares the same ones.
-struct record make_record(const struct simulate_parameters *parameters,
+struct record record_init(const struct simulate_parameters *parameters,
                           const struct scene *scene);
 void record_free(struct record *record);
 

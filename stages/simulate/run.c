@@ -352,7 +352,7 @@ enum status run_scene(const struct simulate_parameters *parameters, struct scene
                       struct reason *reason)
 {
     const double duration = parameters->duration;
-    *outcome = (struct outcome){.record = make_record(parameters, scene)};
+    *outcome = (struct outcome){.record = record_init(parameters, scene)};
     struct run run = {
         .parameters = parameters,
         .scene = scene,

@@ -342,7 +342,7 @@ static enum status check_strain(const struct simulate_parameters *parameters,
 
 // In this order because each needs the one before: groups name materials, grains take
 // them from groups.
-enum status make_scene(const struct simulate_parameters *parameters,
+enum status scene_init(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason)
 {

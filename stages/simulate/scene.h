@@ -45,7 +45,7 @@ struct scene {
 // grains stand in. SCENE is to be freed with scene_free also after a failure. That a
 // wall stands in grains is found later, by run_scene, when the engine knows the
 // overlaps.
-enum status make_scene(const struct simulate_parameters *parameters,
+enum status scene_init(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason);
 void scene_free(struct scene *scene);

@@ -37,7 +37,8 @@ static double value_at(enum array_type type, const void *at)
     }
 }
 
-struct named_array new_array(const char *name, enum array_type type, int64_t count)
+struct named_array named_array_init(const char *name, enum array_type type,
+                                    int64_t count)
 {
     struct named_array array = {.type = type, .count = count};
     snprintf(array.name, sizeof array.name, "%s", name);

@@ -32,7 +32,8 @@ size_t number_size(enum array_type type);
 
 // COUNT zeros, to be freed with free_arrays. All memory here is that of
 // basics/memory.h: it never fails.
-struct named_array new_array(const char *name, enum array_type type, int64_t count);
+struct named_array named_array_init(const char *name, enum array_type type,
+                                    int64_t count);
 
 // Adds a copy of the COUNT numbers of DATA to LIST; does not look for the name there.
 void add_array(struct array_list *list, const char *name, enum array_type type,

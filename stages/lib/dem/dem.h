@@ -131,10 +131,11 @@ struct dem_wall {
     double servo_largest_speed; // m/s, > 0 with a servo
 };
 
-// A group of grains that moves as a rigid body, whatever pushes it: at a velocity, and
-// turning about an axis through a point that moves along. Its grains feel contacts,
-// walls and bridges, but not those of driven groups, unless bonded; gravity and
-// external forces on them do not count.
+// A group of grains that moves as a rigid body whatever forces act on it: at a given
+// velocity, turning about an axis through a point that moves along. Its contacts, bonds
+// and bridges with other grains and walls act on those; contacts and bridges between
+// two driven grains are left out, and gravity and external forces on driven grains
+// count for nothing.
 struct dem_group {
     struct vector point;    // m
     struct vector axis;     // any length; 0: it does not turn

@@ -39,7 +39,7 @@ struct inactive_pairs {
 };
 
 // A gap may be misjudged by so much of the distance, for rounding.
-static const double margin = 1e-9;
+static const double MARGIN = 1e-9;
 
 static bool are_fixed(const struct dem *dem, const int32_t particle[2])
 {
@@ -72,7 +72,7 @@ static struct distant_pair distant_pair_of(const struct dem *dem, int pair)
     const int32_t *end = dem->pairs.particle[pair];
     const struct vector start = lane_vector(
         dem->pairs.group[pair / PAIRS_IN_GROUP].separation, pair % PAIRS_IN_GROUP);
-    const double cutoff = (1 + margin) * touching_distance(&dem->pairs, pair);
+    const double cutoff = (1 + MARGIN) * touching_distance(&dem->pairs, pair);
     return (struct distant_pair){
         .separation = {start.x, start.y, start.z,
                        dem->place[end[0]].radius - dem->place[end[1]].radius},
@@ -97,7 +97,7 @@ static int split_pairs(struct dem *dem, struct inactive_pairs *inactive)
         if (are_fixed(dem, end)) continue;
         if (!is_bonded(dem, p)) {
             const struct distant_pair distant = distant_pair_of(dem, p);
-            const double least = (1 + 2 * margin) * touching_distance(&dem->pairs, p) +
+            const double least = (1 + 2 * MARGIN) * touching_distance(&dem->pairs, p) +
                                  dem->min_inactive_gap;
             if (distance_square(dem->place, &distant) > least * least) {
                 inactive->distant[inactive->n_distant++] = distant;

@@ -22,7 +22,7 @@
 static struct named_array gather(const struct column *c)
 {
     const size_t size = number_size(c->type);
-    struct named_array array = new_array(c->name, c->type, c->rows * c->width);
+    struct named_array array = named_array_init(c->name, c->type, c->rows * c->width);
     char *to = array.data;
     for (int64_t row = 0; row < c->rows; row++)
         for (int k = 0; k < c->width; k++, to += size)
@@ -40,7 +40,7 @@ struct named_array *dem_save(const struct dem *dem, int *count)
     struct named_array *array = NEW_ARRAY(struct named_array, list.count + 1);
     for (int k = 0; k < list.count; k++)
         array[k] = gather(&list.column[k]);
-    array[list.count] = new_array(bonds_name, ARRAY_UINT8, dem->n_bond);
+    array[list.count] = named_array_init(bonds_name, ARRAY_UINT8, dem->n_bond);
     dem_bonds_intact(dem, array[list.count].data);
     *count = list.count + 1;
     return array;

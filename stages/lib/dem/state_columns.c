@@ -14,8 +14,8 @@
 #include "dem/state_columns.h"
 
 // The range of the schemas: squares of larger numbers would overflow.
-static const double largest = 1e150, smallest = 1e-150;
-static const double largest_count = 0x1p53;
+static const double LARGEST = 1e150, SMALLEST = 1e-150;
+static const double LARGEST_COUNT = 0x1p53;
 
 char *column_address(const struct column *c, int64_t row, int k)
 {
@@ -43,20 +43,20 @@ static void add_time_step(struct column_list *list, struct dem *dem)
                                      .width = 1,
                                      .rows = 1,
                                      .base = &dem->time_step,
-                                     .least = smallest,
-                                     .most = largest});
+                                     .least = SMALLEST,
+                                     .most = LARGEST});
     add_column(list, (struct column){.name = "time_before",
                                      .type = ARRAY_FLOAT64,
                                      .width = 1,
                                      .rows = 1,
                                      .base = &dem->time_before,
-                                     .most = largest});
+                                     .most = LARGEST});
     add_column(list, (struct column){.name = "step_since",
                                      .type = ARRAY_INT64,
                                      .width = 1,
                                      .rows = 1,
                                      .base = &dem->step_since,
-                                     .most = largest_count});
+                                     .most = LARGEST_COUNT});
 }
 
 // Gravity, friction and damping are state, because callers may change them during a
@@ -69,18 +69,18 @@ static void add_scalars(struct column_list *list, struct dem *dem)
         int width;
         void *at;
         double least, most;
-    } of[] = {{"cycle", ARRAY_INT64, 1, &dem->cycle, 0, largest_count},
-              {"search_cycle", ARRAY_INT64, 1, &dem->search_cycle, 0, largest_count},
+    } of[] = {{"cycle", ARRAY_INT64, 1, &dem->cycle, 0, LARGEST_COUNT},
+              {"search_cycle", ARRAY_INT64, 1, &dem->search_cycle, 0, LARGEST_COUNT},
               {"searches_in_order", ARRAY_INT32, 1, &dem->searches_in_order, 0, 1e9},
-              {"skin", ARRAY_FLOAT64, 1, &dem->skin, smallest, largest},
-              {"travelled", ARRAY_FLOAT64, 1, &dem->travelled, 0, largest},
-              {"closed_in", ARRAY_FLOAT64, 1, &dem->closed_in, 0, largest},
-              {"box_lower", ARRAY_FLOAT64, 3, dem->box_lower, -largest, largest},
-              {"box_upper", ARRAY_FLOAT64, 3, dem->box_upper, -largest, largest},
-              {"gravity", ARRAY_FLOAT64, 3, &dem->gravity, -largest, largest},
-              {"friction", ARRAY_FLOAT64, 1, dem->pair_friction, 0, largest},
+              {"skin", ARRAY_FLOAT64, 1, &dem->skin, SMALLEST, LARGEST},
+              {"travelled", ARRAY_FLOAT64, 1, &dem->travelled, 0, LARGEST},
+              {"closed_in", ARRAY_FLOAT64, 1, &dem->closed_in, 0, LARGEST},
+              {"box_lower", ARRAY_FLOAT64, 3, dem->box_lower, -LARGEST, LARGEST},
+              {"box_upper", ARRAY_FLOAT64, 3, dem->box_upper, -LARGEST, LARGEST},
+              {"gravity", ARRAY_FLOAT64, 3, &dem->gravity, -LARGEST, LARGEST},
+              {"friction", ARRAY_FLOAT64, 1, dem->pair_friction, 0, LARGEST},
               {"local_damping", ARRAY_FLOAT64, 1, &dem->local_damping, 0, 1},
-              {"books", ARRAY_FLOAT64, 8, &dem->energy_ledger, -largest, largest}};
+              {"books", ARRAY_FLOAT64, 8, &dem->energy_ledger, -LARGEST, LARGEST}};
     for (size_t k = 0; k < sizeof of / sizeof *of; k++)
         add_column(list, (struct column){.name = of[k].name,
                                          .type = of[k].type,
@@ -111,8 +111,8 @@ static struct column *add_numbers(struct column_list *list, const char *name,
                                             .base = at.base,
                                             .offset = at.offset,
                                             .stride = at.stride,
-                                            .least = -largest,
-                                            .most = largest});
+                                            .least = -LARGEST,
+                                            .most = LARGEST});
 }
 
 static struct column *add_integers(struct column_list *list, const char *name,
@@ -135,11 +135,11 @@ static void add_grains(struct column_list *list, struct dem *dem)
     add_numbers(list, "start", WHOLE(dem->start), 3, n);
     add_numbers(list, "displacement", OF(dem->place, struct place, displacement), 3, n);
     add_numbers(list, "radius", OF(dem->place, struct place, radius), 1, n)->least =
-        smallest;
+        SMALLEST;
     add_numbers(list, "velocity", OF(dem->motion, struct motion, linear), 3, n);
     add_numbers(list, "spin", OF(dem->motion, struct motion, angular), 3, n);
-    add_numbers(list, "mass", WHOLE(dem->mass), 1, n)->least = smallest;
-    add_numbers(list, "weight", WHOLE(dem->weight), 1, n)->least = smallest;
+    add_numbers(list, "mass", WHOLE(dem->mass), 1, n)->least = SMALLEST;
+    add_numbers(list, "weight", WHOLE(dem->weight), 1, n)->least = SMALLEST;
     add_numbers(list, "mobility", WHOLE(dem->mobility), 2, n)->least = 0;
     add_numbers(list, "displacement_at_search", WHOLE(dem->place_at_search), 3, n);
     if (dem->applied) add_numbers(list, "applied_force", WHOLE(dem->applied), 3, n);
@@ -211,7 +211,7 @@ static void add_cracks(struct column_list *list, struct dem *dem)
     add_integers(list, name, type, OF(dem->crack, struct dem_crack, member), n, 0, most)
     CRACK("crack_bond", ARRAY_INT32, bond, dem->n_bond - 1);
     CRACK("crack_mode", ARRAY_UINT8, mode, DEM_CRACK_SHEAR);
-    CRACK("crack_cycle", ARRAY_INT64, cycle, largest_count);
+    CRACK("crack_cycle", ARRAY_INT64, cycle, LARGEST_COUNT);
 #undef CRACK
     add_numbers(list, "crack_position", OF(dem->crack, struct dem_crack, position), 3,
                 n);

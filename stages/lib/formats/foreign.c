@@ -14,7 +14,7 @@
 static const double LARGEST_SIZE = 1e150; // what artifacts hold
 
 // All zeros, without grains and faces: the network of another program has none.
-struct network new_network(int n_node, int n_throat)
+struct network network_init(int n_node, int n_throat)
 {
     struct network network = {.n_node = n_node,
                               .node_position = NEW_ARRAY(struct vector, n_node),

@@ -8,7 +8,7 @@
 
 // Room for that many nodes and throats, zeroed, throat volumes included; no grains, no
 // faces. The caller frees it with network_free.
-struct network new_network(int n_node, int n_throat);
+struct network network_init(int n_node, int n_throat);
 
 // Puts the lower node of each throat first. STATUS_BAD_DATA: nodes that are not there,
 // both ends at one node, radii, lengths or volumes below 0, and what is not finite or

@@ -427,7 +427,7 @@ enum status network_from_jsongraph(const json_t *document, struct network *netwo
         return refuse(reason, STATUS_BAD_DATA,
                       "graph: must have as many nodes and edges as number_of_nodes and "
                       "number_of_links say");
-    *network = new_network(n_node, n_throat);
+    *network = network_init(n_node, n_throat);
     const enum status status = read_graph(graph, network, reason);
     if (status) network_free(network);
     return status;

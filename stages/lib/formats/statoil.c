@@ -255,7 +255,7 @@ enum status network_from_statoil(const char *const text[STATOIL_FILES],
     if (!status) status = read_line(&link1, 1, &links, reason);
     if (!status) status = read_count(&link1, links, &n_link, reason);
     if (status) return status;
-    *network = new_network(n_node, n_link);
+    *network = network_init(n_node, n_link);
     status = read_box(header, &network->packing, reason);
     if (!status) status = read_nodes(&node1, network, reason);
     if (!status) status = read_throats(&link1, &link2, network, reason);
