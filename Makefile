@@ -307,7 +307,7 @@ install: all $(FRONT) $(MAN) $(COMPLETION) ## install under PREFIX (and DESTDIR)
 uninstall: ## remove what install put there
 	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
 		rm -f '$(DESTDIR)$(PREFIX)'/$$to; done
-	@for folder in libexec share; do if [[ -d '$(DESTDIR)$(PREFIX)'/$$folder/craquelure ]]; then \
+	@for folder in lib libexec share; do if [[ -d '$(DESTDIR)$(PREFIX)'/$$folder/craquelure ]]; then \
 		find '$(DESTDIR)$(PREFIX)'/$$folder/craquelure -depth -type d -empty -delete; fi; done
 
 # --- check ----------------------------------------------------------------------------
@@ -328,6 +328,10 @@ sanitize: ## the tests in C and a small run under address and undefined-behaviou
 	@jq '.pack.counts = [3, 3, 4]' samples/stiff-5x5x10.json \
 		| jq '.["force-protocol"].steps = 20 | .["dem-replay"].cycles = 50' >$(small_scene)
 	@+$(MAKE) --no-print-directory $(sanitized) SCENE=$(small_scene) run
+.PHONY: check-slurm
+check-slurm: all ## a study as Slurm's jobs on two nodes of its own, killed and gone on with (five minutes)
+	@apt-get install -y -q slurmctld slurmd slurm-client munge bc time >/dev/null
+	@BIN=$(abspath $(BUILD)/bin) tests/slurm/run
 hard: all ## run the hard cases and print a table
 	@tests/hard/run
 bench: all $(BENCHES) ## measure speeds, as ratios within one run

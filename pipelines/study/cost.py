@@ -13,12 +13,21 @@ def times(folder):
         with open(os.path.join(folder, ".study/times"), encoding="utf-8") as file:
             for line in file:
                 words = line.split()
-                if len(words) == 4:
+                if len(words) == 5:
                     total, n = sums.get(words[0], (0, 0))
                     sums[words[0]] = total + float(words[2]) - float(words[1]), n + 1
     except OSError:
         pass
     return {label: total / n for label, (total, n) in sums.items()}
+
+
+def memory(folder):
+    """MiB of the largest program so far; 0: none was measured."""
+    try:
+        with open(os.path.join(folder, ".study/times"), encoding="utf-8") as file:
+            return max((float(line.split()[4]) for line in file if len(line.split()) == 5), default=0) / 1024
+    except (OSError, ValueError):
+        return 0
 
 
 def sizes(plan, folder):

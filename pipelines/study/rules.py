@@ -10,6 +10,7 @@ from plan import TREE, Artifact, recipe_of
 MEMO = os.path.join(TREE, "tools/memo")
 # More words than this go to memo by a file: a line of a shell holds 128 kB.
 LONGEST = 60000
+TIME = "PEAK = /usr/bin/time -q -f %M -o $@.peak\n"  # kB, the largest program
 HEAD = r"""# Made by pipelines/study: what is stale of this study. tools/memo makes it.
 MAKEFLAGS += --no-builtin-rules --no-builtin-variables
 SHELL := /bin/bash
@@ -17,9 +18,11 @@ SHELL := /bin/bash
 .PHONY: all $(TARGETS)
 all: $(TARGETS)
 # $1: a stage, $2: what memo is told. What a stage says that fails stays beside; else it is noted, as are times.
-make_it = @start=$$EPOCHREALTIME; status=0; mkdir -p $(@D); $(MEMO) run $2 2>$@.said || status=$$?; \
+make_it = @start=$$EPOCHREALTIME; status=0; mkdir -p $(@D); $(PEAK) $(MEMO) run $2 2>$@.said || status=$$?; \
 	if (( status )); then cat $@.said >&2; else \
-	[[ ! -s $@.said ]] || sed 's|^|$@ |' $@.said >>.study/notes; rm -f $@.said; echo "$1 $$start $$EPOCHREALTIME $@" >>.study/times; fi; exit $$status
+	peak=0; [[ ! -s $@.peak ]] || peak=$$(<$@.peak); \
+	[[ ! -s $@.said ]] || sed 's|^|$@ |' $@.said >>.study/notes; rm -f $@.said $@.peak; \
+	echo "$1 $$start $$EPOCHREALTIME $@ $$peak" >>.study/times; fi; exit $$status
 """
 
 
@@ -75,7 +78,8 @@ def write_rules(plan, made, wanted, stale, folder, name):
     inputs = {path: [each.path for part in parts for each in part.inputs if isinstance(each, Artifact) and each.path in made]
               for path, parts in plan.parts.items()}
     with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
-        file.write(f"TARGETS := {' '.join(wanted)}\ncomma := ,\nMEMO := {in_make(shlex.quote(MEMO))}\n{HEAD}")
+        file.write(f"TARGETS := {' '.join(wanted)}\ncomma := ,\nMEMO := {in_make(shlex.quote(MEMO))}\n"
+                   f"{TIME if os.path.exists('/usr/bin/time') else ''}{HEAD}")
         for path in wanted:
             needs = dict.fromkeys(each for each in inputs[path] if each in stale)
             file.write(f"{path}:{' | ' if needs else ''}{' '.join(needs)}\n"
