@@ -110,7 +110,8 @@ tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
 support_for = $(call object,$(wildcard tests/$1/support_*.c))
 test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
 C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
-BENCHES := $(call test_programs,bench) $(call test_programs,bench/void)
+VOID := $(call test_programs,bench/void)
+BENCHES := $(call test_programs,bench) $(VOID)
 SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
 
 quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
@@ -313,8 +314,8 @@ uninstall: ## remove what install put there
 # --- check ----------------------------------------------------------------------------
 
 BENCH_STUDIES := $(addprefix bench-,dem impact simulate simulate-speed walls bridge viscous replay dry network flow report)
-.PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) speed-vs-error
-check: all $(C_TESTS) ## run all tests, the hard cases last
+.PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) bench-void speed-vs-error
+check: all $(C_TESTS) $(VOID) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
 	@tests/hard/run
 check-c: $(C_TESTS) ## run the tests written in C only
@@ -350,6 +351,9 @@ bench-dry: ## time of drying and of invasion percolation against size (ten minut
 bench-network: ## measure time and memory of the tessellation, next to voro++
 bench-flow: ## measure time and memory of the flow, next to Yade
 bench-report: ## the page of 50,000 grains in a headless Chromium: first picture, slider, turning
+bench-void: all $(VOID) ## networks of packings beside their void solved directly (a minute)
+	@tests/bench/void/compare $(BUILD)/void
+	@tests/bench/void/compare --flow $(BUILD)/void
 speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minutes)
 	@tests/bench/speed-vs-error
 

@@ -2,7 +2,7 @@
 // Multigrid as a preconditioner of conjugate gradients, in single precision.
 //
 // Unknowns: a potential x in the middle of each cell. In each cell
-//     sum over its six faces of g_f (x - x_other) = right.
+//     sum over its six faces of g_f (x - x_other) + leak x = right.
 // A coarse cell is eight fine ones of one x: its faces conduct the sum of theirs, times
 // 1/2 since the way is twice as long (the correction of Braess 1995 for such coarse
 // grids). Smoother: two Jacobi steps with Chebyshev's weights for the eigenvalues 0.4
@@ -29,8 +29,8 @@ static size_t at(const struct level *level, int i, int j, int k)
 
 // Copies the cells of one side to the layer beyond the other, along each axis in turn,
 // so that edges and corners come right as well.
-#define FILL_AROUND(type, name)                                                        \
-    static void name(const struct level *level, type *x)                               \
+#define FILL_AROUND(storage, type, name)                                               \
+    storage void name(const struct level *level, type *x)                              \
     {                                                                                  \
         for (int a = 0; a < 3; a++) {                                                  \
             if (!level->periodic[a]) continue;                                         \
@@ -45,12 +45,12 @@ static size_t at(const struct level *level, int i, int j, int k)
                 }                                                                      \
         }                                                                              \
     }
-FILL_AROUND(float, fill_around_single)
-FILL_AROUND(double, fill_around)
+FILL_AROUND(static, float, fill_around_single)
+FILL_AROUND(, double, fill_around)
 
 // ---- making the levels --------------------------------------------------------------
 
-static void size_level(struct level *level)
+static void size_level(struct level *level, bool leaky)
 {
     level->size = 1;
     for (int a = 0; a < 3; a++) {
@@ -59,6 +59,7 @@ static void size_level(struct level *level)
     }
     for (int a = 0; a < 3; a++)
         level->conductance[a] = NEW_ARRAY(float, level->size);
+    level->leak = leaky ? NEW_ARRAY(float, level->size) : NULL;
     level->inverse = NEW_ARRAY(float, level->size);
     level->x = NEW_ARRAY(float, level->size);
     level->right = NEW_ARRAY(float, level->size);
@@ -82,7 +83,7 @@ static void finish_level(struct level *level)
         for (int j = 1; j <= level->n[1]; j++)
             for (int i = 1; i <= level->n[0]; i++) {
                 const size_t c = at(level, i, j, k);
-                float sum = 0;
+                float sum = level->leak ? level->leak[c] : 0;
                 for (int a = 0; a < 3; a++)
                     sum += level->conductance[a][c] +
                            level->conductance[a][c + level->stride[a]];
@@ -110,6 +111,15 @@ static void fill_finest(struct level *level, const struct grid *grid, int along)
     }
 }
 
+static void fill_coarse_leaks(struct level *coarse, const struct level *fine)
+{
+    for (int k = 1; k <= fine->n[2]; k++)
+        for (int j = 1; j <= fine->n[1]; j++)
+            for (int i = 1; i <= fine->n[0]; i++)
+                coarse->leak[at(coarse, (i + 1) / 2, (j + 1) / 2, (k + 1) / 2)] +=
+                    fine->leak[at(fine, i, j, k)];
+}
+
 // Adds half of each face of FINE that lies between two cells of COARSE.
 static void fill_coarse(struct level *coarse, const struct level *fine)
 {
@@ -133,14 +143,19 @@ static void fill_coarse(struct level *coarse, const struct level *fine)
             }
 }
 
-struct multigrid multigrid_of(const struct grid *grid, int along)
+struct level level_of(const struct grid *grid, bool leaky)
 {
-    struct multigrid multigrid = {.n_level = 1};
+    struct level level = {0};
+    memcpy(level.n, grid->n, sizeof level.n);
+    memcpy(level.periodic, grid->periodic, sizeof level.periodic);
+    size_level(&level, leaky);
+    return level;
+}
+
+struct multigrid multigrid_from(struct level finest)
+{
+    struct multigrid multigrid = {.n_level = 1, .level = {finest}};
     struct level *level = multigrid.level;
-    memcpy(level->n, grid->n, sizeof level->n);
-    memcpy(level->periodic, grid->periodic, sizeof level->periodic);
-    size_level(level);
-    fill_finest(level, grid, along);
     finish_level(level);
     for (; multigrid.n_level < MOST_LEVELS; multigrid.n_level++, level++) {
         if (level->n[0] <= COARSEST && level->n[1] <= COARSEST &&
@@ -150,11 +165,19 @@ struct multigrid multigrid_of(const struct grid *grid, int along)
         for (int a = 0; a < 3; a++)
             next->n[a] = (level->n[a] + 1) / 2;
         memcpy(next->periodic, level->periodic, sizeof next->periodic);
-        size_level(next);
+        size_level(next, level->leak != NULL);
         fill_coarse(next, level);
+        if (level->leak) fill_coarse_leaks(next, level);
         finish_level(next);
     }
     return multigrid;
+}
+
+struct multigrid multigrid_of(const struct grid *grid, int along)
+{
+    struct level level = level_of(grid, false);
+    fill_finest(&level, grid, along);
+    return multigrid_from(level);
 }
 
 void multigrid_free(struct multigrid *multigrid)
@@ -163,6 +186,7 @@ void multigrid_free(struct multigrid *multigrid)
         struct level *level = &multigrid->level[l];
         for (int a = 0; a < 3; a++)
             free(level->conductance[a]);
+        free(level->leak);
         free(level->inverse);
         free(level->x);
         free(level->right);
@@ -182,11 +206,13 @@ void multigrid_free(struct multigrid *multigrid)
 #define FLUX_OUT(x, c)                                                                 \
     (gx[c] * (x[c] - x[c - 1]) + gx[c + 1] * (x[c] - x[c + 1]) +                       \
      gy[c] * (x[c] - x[c - sy]) + gy[c + sy] * (x[c] - x[c + sy]) +                    \
-     gz[c] * (x[c] - x[c - sz]) + gz[c + sz] * (x[c] - x[c + sz]))
+     gz[c] * (x[c] - x[c - sz]) + gz[c + sz] * (x[c] - x[c + sz]) +                    \
+     (leak ? leak[c] * x[c] : 0))
 #define GET_FACES                                                                      \
     const float *restrict gx = level->conductance[0],                                  \
                           *restrict gy = level->conductance[1],                        \
-                          *restrict gz = level->conductance[2];                        \
+                          *restrict gz = level->conductance[2],                        \
+                          *restrict leak = level->leak;                                \
     const size_t sy = level->stride[1], sz = level->stride[2]
 
 void conduct(const struct level *level, double *x, double *product)
