@@ -313,7 +313,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-BENCH_STUDIES := $(addprefix bench-,dem impact simulate simulate-speed walls bridge viscous replay dry network flow report)
+BENCH_STUDIES := $(addprefix bench-,packings dem impact simulate simulate-speed walls bridge viscous replay dry network flow report)
 .PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) bench-void speed-vs-error
 check: all $(C_TESTS) $(VOID) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -339,6 +339,7 @@ bench: all $(BENCHES) ## measure speeds, as ratios within one run
 	@tests/bench/run
 $(BENCH_STUDIES): bench-%: all $(BENCHES)
 	@tests/bench/$*
+bench-packings: ## packings with an adapted time step beside those of plain dynamics (ten minutes)
 bench-dem: ## the discrete elements beside LAMMPS, LIGGGHTS and Yade (an hour)
 bench-impact: ## error of the contact laws against cost, over time steps
 bench-simulate: ## the program simulate beside LIGGGHTS and Yade: trajectories and averages

@@ -10,9 +10,9 @@ frictions := 0 0.1 0.3 0.5 1
 # Packing $1 with the settings $2, and what is said of it.
 packing = $(call artifact,$(packings_folder)/$1.json,stage=pack version=$(call version_of,pack) $(2:%=set='%'),pipelines/studies/packings/run pipelines/lib/common.py,pipelines/studies/packings/run $(packings_folder)/$1.h5 $(2:%='%') $(packings_folder)/$1.json,$(BUILD)/bin/pack)
 # $1 grains with friction $2.
-close_packing = $(call packing,close-$1-$2,method=radius_expansion count=$1 periodic=[true$(,)true$(,)true] dynamics.overlap=1e-4 dynamics.friction=$2)
+close_packing = $(call packing,close-$1-$2,method=radius_expansion count=$1 periodic=[true$(,)true$(,)true] dynamics.overlap=1e-4 dynamics.friction=$2 dynamics.time_step_safety=0.1)
 # $2 grains in $1 dimensions, with friction $3.
-settled_packing = $(call packing,settled-$1d-$2-$3,method=deposition dimensions=$1 count=$2 dynamics.friction=$3)
+settled_packing = $(call packing,settled-$1d-$2-$3,method=deposition dimensions=$1 count=$2 dynamics.friction=$3 dynamics.time_step_safety=0.1)
 
 packings: ## random close packing, and grains that settle (about ten minutes of one core)
 
