@@ -6,12 +6,13 @@
 // the forces on the grains around a throat, and a grain is closed if f0 sums to 0 on
 // it when all throats are full. With a multiplier m for each closed grain
 //     f = P (f0 - m),   sum P m = sum P f0   on each closed grain,
-// a symmetric, positive and sparse system, solved by conjugate gradients,
-// preconditioned with the number of throats of each grain. At a throat beside a wall
-// or an auxiliary grain P is 1: these take the rest.
+// a symmetric, positive and sparse system of 3x3 blocks, assembled once and solved by
+// conjugate gradients, preconditioned with the diagonal blocks. At a throat beside a
+// wall or an auxiliary grain P is 1: these take the rest.
 #include "balance.h"
 
 #include "basics/memory.h"
+#include "sparse/block_rows.h"
 #include "sparse/conjugate_gradients.h"
 
 #include <assert.h>
@@ -178,50 +179,75 @@ static void project(struct corner *corner, int n)
     }
 }
 
-// NOW = P (SHARE pull - MULTIPLIER of the grain).
-static void balance(struct throats *throats, double share,
-                    const struct vector *multiplier)
+// NOW = P (pull - MULTIPLIER of the grain).
+static void balance(struct throats *throats, const struct vector *multiplier)
 {
 #pragma omp parallel for
     for (int t = 0; t < throats->n_throat; t++) {
         const int n = throats->first[t + 1] - throats->first[t];
         struct corner *corner = &throats->corner[throats->first[t]];
         for (int c = 0; c < n; c++)
-            corner[c].now =
-                subtract(scale(share, corner[c].pull), multiplier[corner[c].grain]);
+            corner[c].now = subtract(corner[c].pull, multiplier[corner[c].grain]);
         if (!throats->supported[t]) project(corner, n);
     }
 }
 
 // --- the multipliers ---------------------------------------------------------------
 
-// SUM becomes SIGN times the sum of NOW on each closed grain, 0 on the others.
-static void sum_up(const struct throats *throats, double sign, struct vector *sum)
+// SUM becomes the sum of NOW on each closed grain, 0 on the others.
+static void sum_up(const struct throats *throats, struct vector *sum)
 {
 #pragma omp parallel for
     for (int i = 0; i < throats->n_grain; i++) {
         sum[i] = (struct vector){0};
         if (!throats->closed[i]) continue;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
-            sum[i] = add(sum[i], scale(sign, throats->corner[throats->corners[k]].now));
+            sum[i] = add(sum[i], throats->corner[throats->corners[k]].now);
     }
+}
+
+// Adds to BLOCK what P of a throat with N corners takes from the corner ROW to COLUMN.
+static void add_projection(const struct corner *row, const struct corner *column, int n,
+                           bool supported, double *block)
+{
+    for (int axis = 0; axis < 3; axis++)
+        block[4 * axis] += (row == column) - (supported ? 0 : 1.0 / n);
+    for (int k = 0; k < 3 && !supported; k++)
+        for (int a = 0; a < 9; a++)
+            block[a] -= component(row->rotation[k], a / 3) *
+                        component(column->rotation[k], a % 3);
+}
+
+// The matrix that takes multipliers to sum P m on each closed grain.
+static struct block_rows assemble(const struct throats *throats)
+{
+    struct block_rows rows = block_rows_init(throats->n_grain);
+    for (int i = 0; i < throats->n_grain; i++) {
+        for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++) {
+            const struct corner *row = &throats->corner[throats->corners[k]];
+            const int t = row->throat, first = throats->first[t];
+            const int n = throats->first[t + 1] - first;
+            for (int c = first; c < first + n && throats->closed[i]; c++) {
+                const struct corner *column = &throats->corner[c];
+                if (!throats->closed[column->grain]) continue;
+                if (throats->supported[t] && row != column) continue;
+                add_projection(row, column, n, throats->supported[t],
+                               block_rows_at(&rows, column->grain));
+            }
+        }
+        block_rows_end_row(&rows);
+    }
+    return rows;
 }
 
 static void multiply(void *context, const double *x, double *image)
 {
-    struct throats *throats = context;
-    balance(throats, 0, (const struct vector *)x);
-    sum_up(throats, -1, (struct vector *)image);
+    block_rows_multiply(context, x, image);
 }
 
-// Divides by the number of throats of each grain. On grains not closed all is 0.
 static void precondition(void *context, const double *residual, double *z)
 {
-    const struct throats *throats = context;
-    for (int i = 0; i < throats->n_grain; i++)
-        for (int axis = 0; axis < 3; axis++)
-            z[3 * i + axis] = residual[3 * i + axis] /
-                              fmax(1, throats->begin[i + 1] - throats->begin[i]);
+    block_rows_precondition(context, residual, z);
 }
 
 static double pulls_squared(const struct throats *throats)
@@ -238,11 +264,12 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
     static const int most = 10000;
     const int n = 3 * throats->n_grain;
     struct vector *residual = NEW_ARRAY(struct vector, throats->n_grain);
-    struct linear_problem problem = {n, throats, multiply, precondition, {0}};
+    struct block_rows rows = assemble(throats);
+    struct linear_problem problem = {n, &rows, multiply, precondition, {0}};
     for (int k = 0; k < 3; k++)
         problem.work[k] = NEW_ARRAY(double, n);
-    balance(throats, 1, multiplier);
-    sum_up(throats, 1, residual);
+    balance(throats, multiplier);
+    sum_up(throats, residual);
     const double tolerance = 1e-15 * sqrt(pulls_squared(throats));
     const int count =
         conjugate_gradients(&problem, &residual->x, &multiplier->x, tolerance, most);
@@ -250,6 +277,7 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
     for (int k = 0; k < 3; k++)
         free(problem.work[k]);
     free(residual);
+    block_rows_free(&rows);
     if (left <= 10 * tolerance) return STATUS_OK;
     return refuse(
         reason, STATUS_NOT_CONVERGED,
@@ -277,12 +305,12 @@ static enum status balance_pulls(struct throats *throats, double *change,
 {
     static const double rounding = 1e-12;
     struct vector *multiplier = NEW_ARRAY(struct vector, throats->n_grain);
-    balance(throats, 1, multiplier);
+    balance(throats, multiplier);
     *change = change_of(throats);
     enum status status = STATUS_OK;
     if (*change > rounding) {
         status = find_multipliers(throats, multiplier, reason);
-        balance(throats, 1, multiplier);
+        balance(throats, multiplier);
         *change = change_of(throats);
         for (int k = 0; k < throats->n_corner; k++)
             throats->corner[k].pull = throats->corner[k].now;
