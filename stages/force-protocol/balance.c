@@ -16,6 +16,7 @@
 #include "sparse/conjugate_gradients.h"
 
 #include <assert.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 // A grain beside a throat.
@@ -211,7 +212,7 @@ static void add_projection(const struct corner *row, const struct corner *column
                            bool supported, double *block)
 {
     for (int axis = 0; axis < 3; axis++)
-        block[4 * axis] += (row == column) - (supported ? 0 : 1.0 / n);
+        block[(ptrdiff_t)4 * axis] += (row == column) - (supported ? 0 : 1.0 / n);
     for (int k = 0; k < 3 && !supported; k++)
         for (int a = 0; a < 9; a++)
             block[a] -= component(row->rotation[k], a / 3) *

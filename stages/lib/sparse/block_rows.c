@@ -10,6 +10,7 @@
 #include "basics/memory.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 struct block_rows block_rows_init(int n)
@@ -88,9 +89,9 @@ void block_rows_end_row(struct block_rows *rows)
 
 static void add_product(const double block[9], const double *x, double sum[3])
 {
-    for (int k = 0; k < 3; k++)
-        sum[k] +=
-            block[3 * k] * x[0] + block[3 * k + 1] * x[1] + block[3 * k + 2] * x[2];
+    sum[0] += block[0] * x[0] + block[1] * x[1] + block[2] * x[2];
+    sum[1] += block[3] * x[0] + block[4] * x[1] + block[5] * x[2];
+    sum[2] += block[6] * x[0] + block[7] * x[1] + block[8] * x[2];
 }
 
 void block_rows_multiply(const struct block_rows *rows, const double *x, double *image)
@@ -99,7 +100,7 @@ void block_rows_multiply(const struct block_rows *rows, const double *x, double 
     for (int i = 0; i < rows->n; i++) {
         double sum[3] = {0};
         for (int k = rows->start[i]; k < rows->start[i + 1]; k++)
-            add_product(rows->block[k], x + 3 * rows->column[k], sum);
+            add_product(rows->block[k], x + 3 * (ptrdiff_t)rows->column[k], sum);
         for (int axis = 0; axis < 3; axis++)
             image[3 * i + axis] = sum[axis];
     }
@@ -111,7 +112,7 @@ void block_rows_precondition(const struct block_rows *rows, const double *residu
 #pragma omp parallel for schedule(static)
     for (int i = 0; i < rows->n; i++) {
         double sum[3] = {0};
-        add_product(rows->inverse[i], residual + 3 * i, sum);
+        add_product(rows->inverse[i], residual + 3 * (ptrdiff_t)i, sum);
         for (int axis = 0; axis < 3; axis++)
             z[3 * i + axis] = sum[axis];
     }
