@@ -435,6 +435,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     take_materials(dem, setup);
     take_grains(dem, setup);
     take_bonds(dem, setup);
+    take_shrinkage(dem, setup);
     take_walls(dem, setup);
     dem->features = choose_features(dem, setup);
     dem->sweep = choose_sweep(dem->features);

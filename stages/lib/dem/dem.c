@@ -45,6 +45,8 @@ void dem_free(struct dem *dem)
                            dem->group_of,
                            dem->lever,
                            dem->bond_particle,
+                           dem->shrinkage,
+                           dem->first_radius,
                            dem->bond_radius,
                            dem->bond_strength[0],
                            dem->bond_strength[1],

@@ -187,6 +187,7 @@ struct dem_setup {
     // below 0 [G 3]. Grains then rebound faster.
     bool no_tensile_damping;
     bool balance_energy; // keep the ledger that dem_energy reports
+    bool shrinks;        // dem_set_shrinkage will be called
     int threads;         // >= 1; used where there is enough to share
 };
 
@@ -294,6 +295,13 @@ void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed);
 // STATUS_OK, or STATUS_BAD_DATA and does nothing with bonds or driven groups, or where
 // grains with liquid grow. O(pairs).
 enum status dem_rescale(struct dem *dem, const double stretch[3], double growth);
+
+// Drying shrinkage of every grain (n_particle): the linear strain, below 1, by which it
+// is smaller than at the start; its bonds and contacts follow from the next cycle on
+// [shrinkage.c]. Masses stay. Needs setup.shrinks, without which nothing is done; its
+// work counts as gained. Not with liquid bridges. O(pairs).
+void dem_set_shrinkage(struct dem *dem, const double *shrinkage);
+void dem_shrinkage(const struct dem *dem, double *shrinkage); // (n_particle) as it is
 
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is

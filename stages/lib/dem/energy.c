@@ -53,7 +53,8 @@ static double bond_energy(const struct dem *dem, int pair, double stretch)
     const double twist = g->twist[lane];
     const double normal = dem->bond_normal_stiffness,
                  across = dem->bond_shear_stiffness;
-    return 0.5 * normal * area * stretch * stretch +
+    const double strained = stretch - g->free_stretch[lane];
+    return 0.5 * normal * area * strained * strained +
            spring_energy(dot(shear, shear), across * area) +
            spring_energy(dot(bending, bending), normal * bending_inertia) +
            spring_energy(twist * twist, across * 2 * bending_inertia);

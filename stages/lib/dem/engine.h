@@ -206,6 +206,8 @@ struct dem {
     struct driven_group *group; // (n_driven)
     uint8_t *group_of;          // (n_particle) 1 + its group, or 0; NULL: no groups
     struct vector *lever; // (n_particle) from the point of its group, at the start
+    // (n_particle) as the packing numbers them; NULL: nothing shrinks [shrinkage.c]
+    double *shrinkage, *first_radius;
     bool density_scaling;
     double least_mass; // over the mean mass; 0: none
     bool falls_alike;  // weights in proportion to inertia, as much in all
@@ -376,6 +378,9 @@ void set_wall_bridge_radius(const struct dem *dem, struct wall_pair *pair);
 void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double overlap);
 struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
+
+// Room for the shrinkage of grains, if SETUP has any [shrinkage.c].
+void take_shrinkage(struct dem *dem, const struct dem_setup *setup);
 
 // Scaled. O(pairs).
 double elastic_energy(const struct dem *dem); // of all pairs and walls [energy.c]

@@ -135,7 +135,7 @@ static void copy_history(struct pair_list *to, int to_pair,
 {
     COPY(shear, struct shear_group, force, 3);
     COPY(bonds, struct bond_group, radius, 3);
-    COPY(bonds, struct bond_group, shear_force, 7);
+    COPY(bonds, struct bond_group, shear_force, 8);
 }
 
 static void copy_pair(struct pair_list *to, int to_pair, const struct pair_list *from,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bonds [K 4.31-4.44]; for pair_kernel.h. A parallel bond of radius R has area A = pi
 // R^2, I = pi R^4 / 4 and J = 2 I. With stretch, V^s and the relative spin of one step,
-//     tension = k^n A stretch,            F^s -= k^s A V^s dt,
+//     tension = k^n A (stretch - that of no tension [shrinkage.c]),
+//     F^s -= k^s A V^s dt,
 //     M^n -= k^s J omega^n dt,            M^s -= k^n I omega^s dt,
 // after F^s and M^s were rotated into the new plane. It breaks when
 //     sigma = tension / A + beta |M^s| R / I  or  tau = |F^s| / A + beta |M^n| R / J
@@ -153,8 +154,10 @@ SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, in
     const doublew fourth = square * square;
     const doublew twisting = dot3(m->relative_spin, n);
 
+    const doublew strained =
+        dem->shrinkage ? m->stretch - load(g->free_stretch + at) : m->stretch;
     struct bond_forces c = {
-        .tension = law->tension * square * m->stretch,
+        .tension = law->tension * square * strained,
         .twist = fnmadd(law->twist * fourth, twisting, load(g->twist + at)),
         .shear = rotate_history(m->rotation, load3(g->shear_force, at),
                                 FEATURE_PARALLEL_BOND),

@@ -136,6 +136,7 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
         bonds->shear_force[axis][to.at] = sign * were->shear_force[axis][from.at];
         bonds->bending[axis][to.at] = sign * were->bending[axis][from.at];
         bonds->twist[to.at] = were->twist[from.at];
+        bonds->free_stretch[to.at] = were->free_stretch[from.at];
     }
     group->distance[to.at] = was->distance[from.at];
     group->inverse_distance[to.at] = was->inverse_distance[from.at];

@@ -77,6 +77,7 @@ struct bond_group {
     double shear_force[3][PAIRS_IN_GROUP]; // of parallel bonds, as all below
     double bending[3][PAIRS_IN_GROUP];     // M^s
     double twist[PAIRS_IN_GROUP];          // M^n along n
+    double free_stretch[PAIRS_IN_GROUP];   // of no tension; < 0 once shrunk
     int8_t crack[PAIRS_IN_GROUP]; // mode of a bond broken in this cycle, -1 otherwise
 };
 

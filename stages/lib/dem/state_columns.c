@@ -143,6 +143,7 @@ static void add_grains(struct column_list *list, struct dem *dem)
     add_numbers(list, "mobility", WHOLE(dem->mobility), 2, n)->least = 0;
     add_numbers(list, "displacement_at_search", WHOLE(dem->place_at_search), 3, n);
     if (dem->applied) add_numbers(list, "applied_force", WHOLE(dem->applied), 3, n);
+    if (dem->shrinkage) add_numbers(list, "shrinkage", WHOLE(dem->shrinkage), 1, n);
     if (dem->balance_energy)
         add_numbers(list, "grain_books", WHOLE(dem->grain_ledger), 2, n);
 }
@@ -250,6 +251,8 @@ static void add_pairs(struct column_list *list, struct dem *dem)
     PAIRS("bond_shear_force", bonds, struct bond_group, shear_force, 3);
     PAIRS("bond_bending", bonds, struct bond_group, bending, 3);
     PAIRS("bond_twist", bonds, struct bond_group, twist, 1);
+    if (dem->shrinkage)
+        PAIRS("bond_free_stretch", bonds, struct bond_group, free_stretch, 1);
     PAIRS("loss_dashpots", loss, struct loss_group, dashpots, 1);
     PAIRS("loss_slip", loss, struct loss_group, slip, 1);
     PAIRS("loss_broken", loss, struct loss_group, broken, 1);
