@@ -66,6 +66,24 @@ static void warn_if_unheld(const struct packing *packing, const uint8_t *held)
             supported, n);
 }
 
+// Bonds between a held grain and one that is not are FACTOR times as strong.
+static void strengthen_substrate(double factor, const struct packing *packing,
+                                 struct replay_settings *settings)
+{
+    if (factor == 1) return;
+    const int n = packing->n_bond;
+    double *strength = settings->relative_strength;
+    if (!strength) {
+        strength = settings->relative_strength = NEW_ARRAY(double, n);
+        for (int b = 0; b < n; b++)
+            strength[b] = 1;
+    }
+    for (int b = 0; b < n; b++) {
+        const int32_t *end = packing->bond[b];
+        if (settings->held[end[0]] != settings->held[end[1]]) strength[b] *= factor;
+    }
+}
+
 // The caller frees what it gives to SETTINGS. Grains are held by PARAMETERS only with
 // support=fixed; otherwise the list is empty.
 static void choose_grains(const struct replay_parameters *parameters,
@@ -86,6 +104,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     const enum status status =
         find_fixed_grains(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
+    strengthen_substrate(parameters->substrate_strength, packing, settings);
     if (settings->support != SUPPORT_FIXED || packing->n_particle == 0) return;
     const bool one_moves = memchr(settings->held, 0, (size_t)packing->n_particle);
     if (!one_moves && !quiet) report("all grains are held, so that none moves");
@@ -115,14 +134,66 @@ static void check_sizes(const struct packing *packing, const char *path)
     }
 }
 
-// The caller frees it with free_load.
-static struct load read_load(const struct artifact *input)
+static bool is_packing(const struct artifact *input)
 {
-    struct load load;
-    load.time = artifact_get(input, "/time", &load.n_time);
-    load.saturation = artifact_get(input, "/saturation", NULL);
-    load.force = artifact_get(input, "/force", NULL);
+    return !strcmp(input->schema->name, "packing");
+}
+
+// A load without forces, under which a packing only shrinks.
+static struct load shrinking_load(const struct artifact *input,
+                                  const struct replay_parameters *parameters,
+                                  int n_particle)
+{
+    const int n = (int)parameters->shrinkage_steps;
+    if (!(parameters->settings.shrinkage.strain > 0))
+        die(STATUS_BAD_DATA,
+            "%s: is a packing, without forces: first run tessellate, merge-nodes, dry "
+            "and force-protocol, or let it shrink (dem-replay.shrinkage.strain)",
+            input_name(input->path));
+    struct load load = {.n_time = n,
+                        .time = NEW_ARRAY(double, n),
+                        .saturation = NEW_ARRAY(double, n),
+                        .force =
+                            NEW_ARRAY(struct vector, (size_t)n * (size_t)n_particle)};
+    for (int k = 0; k < n; k++) {
+        load.time[k] = k + 1;
+        load.saturation[k] = (double)(n - 1 - k) / n;
+    }
     return load;
+}
+
+// The caller frees it with free_load.
+static struct load read_load(const struct artifact *input,
+                             const struct replay_parameters *parameters, int n_particle)
+{
+    const struct shrinkage *how = &parameters->settings.shrinkage;
+    struct load load = {0};
+    if (is_packing(input))
+        load = shrinking_load(input, parameters, n_particle);
+    else {
+        load.time = artifact_get(input, "/time", &load.n_time);
+        load.saturation = artifact_get(input, "/saturation", NULL);
+        load.force = artifact_get(input, "/force", NULL);
+    }
+    load.shrinks = how->strain > 0;
+    if (!load.shrinks || how->law != SHRINKAGE_LIQUID) return load;
+    if (is_packing(input) || !artifact_has_dataset(input, "/liquid_mass"))
+        die(STATUS_BAD_DATA,
+            "%s: /liquid_mass: is not there, which shrinkage.law=liquid needs: run "
+            "force-protocol with a gravity above 0, however small",
+            input_name(input->path));
+    load.dryness = artifact_get(input, "/liquid_mass", NULL);
+    liquid_to_dryness(load.dryness, load.saturation, load.n_time, n_particle);
+    return load;
+}
+
+// Opens the forces, or a packing that is to shrink without any.
+static struct artifact *open_input(const char *path)
+{
+    struct artifact *input = artifact_open(path, NULL);
+    if (!is_packing(input) && strcmp(input->schema->name, "forces"))
+        refuse_kind(path, "forces", input->schema->name);
+    return input;
 }
 
 // What an earlier replay left, if one was named: the engine, and its PACKING. PACKING
@@ -160,6 +231,7 @@ static void free_load(struct load *load)
     free(load->time);
     free(load->saturation);
     free(load->force);
+    free(load->dryness);
 }
 
 static void show(void *bar, double fraction)
@@ -192,6 +264,17 @@ static const char *describe_loose(const struct replay_settings *settings)
                : "loose grains: their loads go on\n";
 }
 
+static void describe_shrinkage(const struct shrinkage *how, char text[200])
+{
+    static const char *const by[] = {"as the saturation falls",
+                                     "behind a front from the top",
+                                     "as the liquid around each goes"};
+    snprintf(text, 200,
+             "grains and their bonds shrink by a strain of %.6g, %s; held ones do "
+             "not\n",
+             how->strain, by[how->law]);
+}
+
 // The times of the first drying period go along, for crackstats.
 static void write_response(const struct packing *packing, const struct load *load,
                            const struct replay_settings *settings,
@@ -202,7 +285,8 @@ static void write_response(const struct packing *packing, const struct load *loa
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
-    char engine[200], support[60], weights[200], bridges[200] = "", model[1500];
+    char engine[200], support[60], weights[200], bridges[200] = "", model[1700];
+    char shrinkage[200] = "";
     replay_engine(settings)->describe(settings, engine, sizeof engine);
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)
@@ -214,27 +298,31 @@ static void write_response(const struct packing *packing, const struct load *loa
                  "tension %.6g N/m, contact angle %.6g degrees\n",
                  settings->liquid.surface_tension,
                  settings->liquid.contact_angle * (180 / M_PI));
+    if (load->shrinks) describe_shrinkage(&settings->shrinkage, shrinkage);
     snprintf(model, sizeof model,
              "%s\n"
              "engine: %s, %s\n"
              "%s"
              "support: %s\n"
              "overlaps of the packing %s\n"
-             "%s%s%s"
+             "%s%s%s%s"
              "left out: %s%smoments of capillary forces\n",
              engine, settings->engine == ENGINE_EXPLICIT ? "explicit" : "quasi-static",
              settings->engine_reason, describe_loose(settings), support,
              settings->unstressed ? "lie at rest" : "push from the start",
              settings->begin ? "goes on from where an earlier replay ended\n" : "",
-             bridges, describe_weight(weight, weights),
+             shrinkage, bridges, describe_weight(weight, weights),
              weight->gravity > 0 ? "" : "gravity, ",
              settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
     put_response(artifact, packing, load, settings, response);
     put_weight(artifact, weight, response);
     artifact_put_arrays(artifact, "engine", &response->engine);
-    artifact_put_number(artifact, "/summary/first_period_end_time",
-                        artifact_get_number(input, "/summary/first_period_end_time"));
+    artifact_put_number(
+        artifact, "/summary/first_period_end_time",
+        is_packing(input)
+            ? 0
+            : artifact_get_number(input, "/summary/first_period_end_time"));
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
@@ -322,20 +410,23 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct replay_settings *settings = &parameters.settings;
     complete_settings(&parameters, invocation.threads);
-    struct artifact *input = artifact_open(invocation.inputs[0], "forces");
+    struct artifact *input = open_input(invocation.inputs[0]);
     char difference[300];
-    if (*complete_bridges(&parameters, input, difference, sizeof difference) &&
+    if (*complete_bridges(&parameters, is_packing(input) ? NULL : input, difference,
+                          sizeof difference) &&
         !invocation.quiet)
         report("bridges: %s", difference);
     struct packing packing = artifact_get_packing(input);
     check_sizes(&packing, input->path);
-    struct load load = read_load(input);
+    struct load load = read_load(input, &parameters, packing.n_particle);
     struct array_list engine = {NULL, 0};
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);
     settings->begin = earlier ? &engine : NULL;
     choose_grains(&parameters, &packing, settings, invocation.quiet);
-    const struct taken_weight weight =
-        take_weight(input, &parameters, &packing, &load, settings);
+    settings->shrinkage.held = settings->held;
+    settings->shrinkage.dryness = load.dryness;
+    const struct taken_weight weight = take_weight(
+        is_packing(input) ? NULL : input, &parameters, &packing, &load, settings);
 
     if (!invocation.quiet) warn_of_defaults(&parameters, &packing);
     json_t *digest = digests(input, earlier);

@@ -77,6 +77,10 @@ const struct parameter replay_table[] = {
     {"bond.strength.seed", PARAMETER_INTEGER, "1", "1", AT(scatter.seed),
      BETWEEN(1, 4294967295),
      .text = "of the strengths (mt19937), drawn in the order of the places of bonds"},
+    {"bond.substrate_strength", PARAMETER_NUMBER, "1", "1", AT(substrate_strength),
+     AT_LEAST(0),
+     .text = "support=fixed: factor on the strength of bonds between a held grain, the "
+             "substrate, and one that is not"},
     {"bond.kind", PARAMETER_CHOICE, "1", "\"parallel\"", AT(bond),
      .choices = "parallel|contact",
      .text = "parallel: elastic cylinders [K 4.31-4.44]; contact: the springs of the "
@@ -87,6 +91,23 @@ const struct parameter replay_table[] = {
     {"prestress", PARAMETER_BOOLEAN, "1", "false", AT(prestress),
      .text = "true: overlaps of the packing push from the start; false: they do not, "
              "only further approach does"},
+    {"shrinkage.strain", PARAMETER_NUMBER, "1", "0", AT(settings.shrinkage.strain),
+     BETWEEN(0, 0.5),
+     .text = "explicit: drying shrinkage, the linear strain by which dry grains and "
+             "their bonds are smaller without stress; never swells back; 0: none"},
+    {"shrinkage.law", PARAMETER_CHOICE, "1", "\"uniform\"", AT(shrinkage_law),
+     .choices = "uniform|front|liquid",
+     .text = "uniform: as the saturation falls, everywhere; front: behind a drying "
+             "front from the top; liquid: as the liquid around each grain goes "
+             "(/liquid_mass, with force-protocol.gravity above 0)"},
+    {"shrinkage.front_width", PARAMETER_NUMBER_OR_NULL, "1", "null",
+     AT(settings.shrinkage.front_width), ABOVE(0),
+     .text = "law=front: from where shrinking begins to where it ends, in mean "
+             "diameters; null: the height of the body"},
+    {"shrinkage.steps", PARAMETER_INTEGER, "1", "40", AT(shrinkage_steps),
+     BETWEEN(1, 1e6),
+     .text = "steps of a load without forces, where the input is a packing: saturation "
+             "falls evenly to 0, a step a second"},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", AT(support),
      .choices = "free|fixed|wall",
      .text = "free: net force and moment are removed; fixed: the grains of held "
@@ -227,7 +248,8 @@ const char *complete_bridges(struct replay_parameters *parameters,
     const struct liquid_properties water = {
         .surface_tension =
             fluid_value(FLUID_WATER, FLUID_SURFACE_TENSION, 293.15, 1e5)};
-    const struct liquid_properties has = artifact_get_liquid(forces);
+    const struct liquid_properties unknown = {NAN, NAN, NAN, NAN, NAN, NAN};
+    const struct liquid_properties has = forces ? artifact_get_liquid(forces) : unknown;
     struct liquid_properties *told = &parameters->bridge_liquid;
     liquid_complete(told, &has);
     liquid_complete(told, &water);
@@ -249,14 +271,15 @@ static bool suits_equilibria(const struct replay_settings *settings,
     return !(settings->material.friction > 0) && settings->support == SUPPORT_FIXED &&
            settings->bond.kind == DEM_PARALLEL_BOND && settings->unstressed &&
            !(settings->liquid.volume > 0) && packing->n_bond > 0 &&
-           packing->n_particle <= MOST_GRAINS;
+           !(settings->shrinkage.strain > 0) && packing->n_particle <= MOST_GRAINS;
 }
 
 // For the provenance: which of the reasons it was.
 static const char *why_cycles(const struct replay_settings *settings)
 {
-    return settings->material.friction > 0
-               ? "contacts have friction"
+    return settings->material.friction > 0 ? "contacts have friction"
+           : settings->shrinkage.strain > 0
+               ? "grains shrink"
                : "bonds, support, liquid bridges or the number of grains do not suit "
                  "equilibria";
 }
@@ -289,6 +312,7 @@ void complete_settings(struct replay_parameters *parameters, int threads)
     settings->loose = (enum loose_loads)parameters->loose;
     settings->unsettled = (enum unsettled)parameters->unsettled;
     settings->unstressed = !parameters->prestress;
+    settings->shrinkage.law = (enum shrinkage_law)parameters->shrinkage_law;
     settings->liquid.model = (enum bridge_model)parameters->bridge_model;
     choose_bonds(parameters, settings);
     settings->n_snapshot = parameters->snapshots.count;

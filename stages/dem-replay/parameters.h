@@ -16,9 +16,12 @@ struct replay_parameters {
     struct liquid_properties bridge_liquid; // tension and angle
     struct fixed_grains held;               // with support=fixed
     struct strength_scatter scatter;        // its law is strength_law
-    int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model;
+    int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model,
+        shrinkage_law;
     bool prestress; // overlaps of the packing push from the start
     double bond_gap, contact_strength, moment_contribution, gravity;
+    double substrate_strength;    // factor on bonds of a held grain to one that is not
+    int64_t shrinkage_steps;      // of an input without forces
     struct number_list snapshots; // saturations, falling
 };
 
@@ -30,9 +33,9 @@ extern const struct parameter replay_table[];
 // snapshots do not fall.
 void complete_settings(struct replay_parameters *parameters, int threads);
 
-// Gives bridges the liquid of FORCES unless the user gave one. Returns DIFFERENCE (SIZE
-// bytes): one line if the user's liquid differs, else empty. A user's value comes
-// first, then that of the forces, then water at 20 degrees Celsius.
+// Gives bridges the liquid of FORCES (NULL: there are none) unless the user gave one.
+// Returns DIFFERENCE (SIZE bytes): one line if the user's liquid differs, else empty. A
+// user's value comes first, then that of the forces, then water at 20 degrees Celsius.
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size);

@@ -7,6 +7,7 @@
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
 #include "geometry/net_load.h"
+#include "shrinkage.h"
 
 #include <math.h>
 #include <stdbool.h>
@@ -39,17 +40,20 @@ struct load {
     int n_time;
     double *time, *saturation; // (n_time) s, rising; of the network, from 1 down
     struct vector *force;      // (n_time * n_particle) N
+    double *dryness;           // (n_time * n_particle) of each grain; NULL: not known
+    bool shrinks; // grains shrink under it: it acts also where it has no force
 };
 
 // How to replay. It owns nothing: arrays must outlive the replay.
 struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
-    double *relative_strength; // (n_bond) of those of `bond`; NULL: 1
-    uint8_t *held;             // (n_particle) 1: neither moves nor turns
-    struct dem_liquid liquid;  // of no volume: none
-    bool tensile_damping;      // dashpots may pull grains that part
-    bool unstressed;           // overlaps of the packing do not push
+    double *relative_strength;  // (n_bond) of those of `bond`; NULL: 1
+    uint8_t *held;              // (n_particle) 1: neither moves nor turns
+    struct dem_liquid liquid;   // of no volume: none
+    bool tensile_damping;       // dashpots may pull grains that part
+    bool unstressed;            // overlaps of the packing do not push
+    struct shrinkage shrinkage; // explicit; it owns nothing
     enum support support;
     enum engine engine;
     const char *engine_reason;    // why this one
@@ -124,8 +128,8 @@ struct replay_progress {
     void *context;
 };
 
-// Whether STEP has a force on any of N grains. Without any, the ratio of [K 4.20]
-// divides one decaying number by another.
+// Whether STEP has a force on any of N grains, or shrinks them. Without any, the ratio
+// of [K 4.20] divides one decaying number by another.
 bool is_loaded(const struct load *load, int n, int step);
 
 // Replays LOAD on PACKING. STATUS_NOT_CONVERGED: the time step would be unstable, the

@@ -76,6 +76,7 @@ static enum status create(struct run *run, struct dem **dem, struct reason *reas
         .liquid = settings->liquid.volume > 0 ? &settings->liquid : NULL,
         .fixed = settings->held,
         .unstressed = settings->unstressed,
+        .shrinks = settings->shrinkage.strain > 0,
         .no_tensile_damping = !settings->tensile_damping,
         .n_wall = settings->support == SUPPORT_WALL,
         .wall = &beneath,
@@ -139,6 +140,7 @@ static bool unloads(const struct run *run)
 // Cycles after which the load is adapted to the grains again.
 static int64_t load_holds(const struct run *run)
 {
+    if (run->load->shrinks && run->settings->support != SUPPORT_FREE) return STOP_EVERY;
     if (run->settings->support == SUPPORT_FREE) return TAKE_OFF_EVERY;
     return unloads(run) ? STOP_EVERY : INT64_MAX;
 }
@@ -212,9 +214,43 @@ static void grow(struct run *run)
                    : scale(share, run->force[i]);
 }
 
+// Shrinks grains to SHARE of the way from the shrinkage of the row before to that of
+// this one, but none swells: not where liquid comes back, nor after an earlier replay.
+static void shrink_to(struct run *run, double share)
+{
+    const struct shrinkage *how = &run->settings->shrinkage;
+    const int n = run->packing->n_particle, row = run->place.step;
+    if (!run->load->shrinks || row < 0) return;
+    double *strain[3];
+    for (int k = 0; k < 3; k++) {
+        strain[k] = NEW_ARRAY(double, n);
+        if (k < 2)
+            find_shrinkage(how, run->packing, row - 1 + k,
+                           run->load->saturation[row - 1 + k >= 0 ? row - 1 + k : 0],
+                           strain[k]);
+    }
+    dem_shrinkage(dem_of(run), strain[2]);
+    for (int i = 0; i < n; i++) {
+        const double now = strain[0][i] + share * (strain[1][i] - strain[0][i]);
+        strain[2][i] = fmax(strain[2][i], now);
+    }
+    dem_set_shrinkage(dem_of(run), strain[2]);
+    for (int k = 0; k < 3; k++)
+        free(strain[k]);
+}
+
+// Evenly over the cycles of the step, after the ramp.
+static void shrink(struct run *run)
+{
+    const int64_t done = dem_cycle(dem_of(run)) - run->place.began - ramp(run);
+    if (done < 0 || done > run->settings->cycles) return;
+    shrink_to(run, (double)done / (double)run->settings->cycles);
+}
+
 // Applies the forces of the step to the grains where they are now.
 static void apply_forces(struct run *run)
 {
+    shrink(run);
     take_forces(run);
     grow(run);
     follow_loose(run);
@@ -367,6 +403,8 @@ static enum status advance(struct run *run, struct reason *reason)
     }
     const int64_t left = full + run->settings->cycles - dem_cycle(dem_of(run));
     if (!status) status = run_cycles(run, left, reason);
+    if (!status && dem_cycle(dem_of(run)) == full + run->settings->cycles)
+        shrink_to(run, 1);
     return status ? status : run_on(run, reason);
 }
 

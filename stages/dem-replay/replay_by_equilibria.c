@@ -33,6 +33,10 @@ static enum status check(const struct replay_settings *settings, struct reason *
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.bridges.volume: equilibria have no liquid bridges: "
                       "use engine=explicit");
+    if (settings->shrinkage.strain > 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.shrinkage.strain: equilibria do not shrink: use "
+                      "engine=explicit");
     return STATUS_OK;
 }
 

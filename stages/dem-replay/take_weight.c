@@ -20,7 +20,7 @@
 // The gravity in the forces; 0: none.
 static double gravity_of_forces(const struct artifact *input)
 {
-    return artifact_has_number(input, "/summary/gravity")
+    return input && artifact_has_number(input, "/summary/gravity")
                ? artifact_get_number(input, "/summary/gravity")
                : 0;
 }
@@ -56,7 +56,7 @@ struct taken_weight take_weight(const struct artifact *input,
     struct taken_weight taken = {.gravity_of_liquid = of_forces,
                                  .gravity =
                                      choose_gravity(parameters, packing, of_forces)};
-    double *liquid = artifact_has_dataset(input, "/liquid_mass")
+    double *liquid = input && artifact_has_dataset(input, "/liquid_mass")
                          ? artifact_get(input, "/liquid_mass", NULL)
                          : NULL;
     struct weighing weighing = {.packing = packing,
@@ -64,11 +64,11 @@ struct taken_weight take_weight(const struct artifact *input,
                                 .gravity = taken.gravity > 0 ? taken.gravity
                                                              : GRAVITY_OF_THE_EARTH,
                                 .liquid = load->n_time > 0 ? liquid : NULL};
-    taken.numbers =
-        find_bond_numbers(load,
-                          artifact_get_number(input, "/summary/capillary_pressure") *
-                              artifact_get_number(input, "/summary/force_scale"),
-                          &weighing);
+    const double suction =
+        input ? artifact_get_number(input, "/summary/capillary_pressure") *
+                    artifact_get_number(input, "/summary/force_scale")
+              : 0;
+    taken.numbers = find_bond_numbers(load, suction, &weighing);
     if (taken.gravity > 0) taken.standing = add_weight(load, &weighing);
     // What an earlier replay has left stands already.
     settings->weight = taken.standing;

@@ -16,10 +16,10 @@ struct taken_weight {
 };
 
 // Takes the weight of the grains into account: adds it to every row of LOAD, which
-// comes from INPUT, and gives SETTINGS the load before drying. That of the liquid is in
-// the forces already, if they were made with gravity. Ends the program with status 65
-// for a gravity with support=free, or in a box that repeats along z. The caller frees
-// .standing, which SETTINGS then point to.
+// comes from INPUT (NULL: from no forces), and gives SETTINGS the load before drying.
+// That of the liquid is in the forces already, if they were made with gravity. Ends the
+// program with status 65 for a gravity with support=free, or in a box that repeats
+// along z. The caller frees .standing, which SETTINGS then point to.
 struct taken_weight take_weight(const struct artifact *input,
                                 const struct replay_parameters *parameters,
                                 const struct packing *packing, struct load *load,

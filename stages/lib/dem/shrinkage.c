@@ -71,13 +71,11 @@ void dem_set_shrinkage(struct dem *dem, const double *shrinkage)
 {
     if (!dem->shrinkage) return;
     const double elastic = dem->balance_energy ? elastic_energy(dem) : 0;
-    double *before =
-        duplicate(dem->shrinkage, (size_t)dem->n_particle, sizeof *before);
+    double *before = duplicate(dem->shrinkage, (size_t)dem->n_particle, sizeof *before);
     double swelling = 0;
     for (int i = 0; i < dem->n_particle; i++) {
         dem->shrinkage[i] = shrinkage[i];
-        swelling =
-            fmax(swelling, (before[i] - shrinkage[i]) * dem->first_radius[i]);
+        swelling = fmax(swelling, (before[i] - shrinkage[i]) * dem->first_radius[i]);
     }
     shrink_grains(dem);
     for (int p = 0; p < dem->pairs.n_pair; p++)
@@ -85,8 +83,7 @@ void dem_set_shrinkage(struct dem *dem, const double *shrinkage)
     free(before);
     dem->closed_in += swelling;
     dem->travelled += swelling;
-    if (dem->balance_energy)
-        dem->energy_ledger.gained += elastic_energy(dem) - elastic;
+    if (dem->balance_energy) dem->energy_ledger.gained += elastic_energy(dem) - elastic;
 }
 
 void dem_shrinkage(const struct dem *dem, double *shrinkage)

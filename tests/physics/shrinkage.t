@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Drying shrinkage of a layer on a floor, against closed forms. In a lattice that repeats
+# along x and y no grain can move sideways, so a bond along x or y carries k^n A l e at
+# the shrinkage e of its grains; upright ones carry nothing, and the layer sinks by e of
+# its height. Bonds along the layer break at e = strength / (k^n l).
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, run, scratch
+
+RADIUS, STIFFNESS, SHARE, SIDE, STRAIN = 0.26e-6, 5e13, 0.5, 6, 0.01
+AREA = math.pi * (SHARE * RADIUS) ** 2
+PACK = {"method": "cubic", "radius": RADIUS, "counts": [SIDE, SIDE, SIDE],
+        "periodic": [True, True, False]}
+REPLAY = {"density": 2500, "normal_stiffness": 10, "shear_stiffness": 10,
+          "bond": {"normal_stiffness": STIFFNESS, "shear_stiffness": 2e13,
+                   "normal_strength": 1e12, "shear_strength": 1e12,
+                   "radius_fraction": SHARE},
+          "shrinkage": {"strain": STRAIN, "steps": 4}, "cycles": 512, "ramp": 0,
+          "tolerance": 1e-9, "snapshots": [0.5, 0]}
+
+
+def replay(path, at, *settings, scene=None):
+    run("dem-replay", "-q", "-p", at("layer.json"), *settings, at("layer.h5"), "-o", path)
+    return h5py.File(path)
+
+
+def refused(*command):
+    process = subprocess.run([f"{BIN}/{command[0]}", *command[1:]], capture_output=True,
+                             text=True)
+    return process.returncode == 65 and process.stderr.count("\n") == 1
+
+
+def bonds_of_free(file):
+    """Forces of all contacts of grains that are not held, at each snapshot; whether each
+    lies along the layer; the height of its first grain."""
+    pairs = file["contacts/particles"][:]
+    place, held = file["particles/position"][:], file["particles/held"][:]
+    free = (held[pairs] == 0).all(axis=1)
+    first, second = place[pairs[free, 0]], place[pairs[free, 1]]
+    flat = np.abs(second[:, 2] - first[:, 2]) < 0.1 * RADIUS
+    force = np.linalg.norm(file["snapshots/contact_force"][:][:, free], axis=2)
+    return force, flat, first[:, 2]
+
+
+def near(got, wanted, tolerance):
+    return np.max(np.abs(got - wanted)) <= tolerance * np.max(np.abs(wanted))
+
+
+with scratch() as folder:
+    def at(name):
+        return os.path.join(folder, name)
+
+    with open(at("layer.json"), "w") as file:
+        json.dump({"pack": PACK, "dem-replay": REPLAY}, file)
+    run("pack", "-q", "-p", at("layer.json"), "-o", at("layer.h5"))
+    full = STIFFNESS * AREA * 2 * RADIUS * STRAIN
+
+    file = replay(at("uniform.h5"), at)
+    force, flat, _ = bonds_of_free(file)
+    ok(near(force[:, flat], np.array([[0.5], [1]]) * full, 1e-6),
+       "uniform: bonds along the layer carry k A l e")
+    ok(np.max(force[:, ~flat]) < 1e-5 * full, "upright bonds carry nothing")
+    place, moved = file["particles/position"][:], file["snapshots/displacement"][1]
+    layer = np.rint(place[:, 2] / RADIUS - 1) / 2
+    sunk = np.where(layer > 0, (2 * layer - 1) * RADIUS * STRAIN, 0)
+    ok(near(-moved[:, 2], sunk, 1e-5), "the layer sinks by its free shrinkage")
+    ok(file["history/settled"][:].all(), "steps without forces come to rest as well")
+
+    file = replay(at("front.h5"), at, "-s", "shrinkage.law=front")
+    force, flat, z = bonds_of_free(file)
+    height = 2 * RADIUS * (SIDE - 1)
+    behind = 1 - (place[:, 2].max() - z[flat]) / height
+    ok(near(force[0, flat], behind * full, 1e-6), "front: less dry further down")
+    file = replay(at("narrow.h5"), at, "-s", "shrinkage.law=front", "-s",
+                  "shrinkage.front_width=1")
+    force, flat, z = bonds_of_free(file)
+    share = 1 / (SIDE - 1)
+    behind = np.clip((0.5 * (1 + share) - (place[:, 2].max() - z[flat]) / height) / share,
+                     0, 1)
+    ok(near(force[0, flat], behind * full, 1e-6) and 0 < (behind == 0).sum()
+       and 0 < (behind == 1).sum(), "a narrow front: dry above, wet below")
+
+    broken = {}
+    for factor in 0.99, 1.01:
+        strength = STIFFNESS * 2 * RADIUS * STRAIN / factor
+        file = replay(at("broken.h5"), at, "-s", f"bond.normal_strength={strength}")
+        broken[factor] = len(file["cracks/bond"])
+    ok(broken[0.99] == 0, "nothing breaks below the strain of the strength")
+    ok(broken[1.01] == 2 * SIDE * SIDE * (SIDE - 1), "all along the layer breaks above")
+
+    file = replay(at("floor.h5"), at, "-s", "bond.substrate_strength=4")
+    held = file["particles/held"][:][file["bonds/particles"][:]].sum(axis=1)
+    strength = file["bonds/relative_strength"][:]
+    ok(all((strength[held == k] == (4 if k == 1 else 1)).all() for k in range(3)),
+       "bonds to the substrate have a strength of their own")
+
+    # Scattered strengths, so that it cracks here and there.
+    cracking = ["dem-replay", "-q", "-p", at("layer.json"), "-s",
+                "bond.strength.distribution=normal", "-s", "bond.normal_strength=2e5",
+                "-s", "shrinkage.steps=20", at("layer.h5")]
+    began = time.monotonic()
+    run(*cracking, "-o", at("whole.h5"))
+    lasted = time.monotonic() - began
+    run(*cracking, "--threads", "3", "-o", at("threads.h5"))
+    with open(at("whole.h5"), "rb") as file:
+        whole = file.read()
+    with open(at("threads.h5"), "rb") as file:
+        ok(file.read() == whole, "the same bytes with three threads")
+    ok(0 < len(h5py.File(at("whole.h5"))["cracks/bond"]) < 648, "some bonds break")
+    for _ in range(20):
+        process = subprocess.Popen([f"{BIN}/{cracking[0]}", *cracking[1:], "--checkpoint",
+                                    at("kept"), "-o", at("pieces.h5")],
+                                   stderr=subprocess.DEVNULL)
+        try:
+            process.wait(lasted / 3)
+            break
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGTERM)
+            process.wait()
+    with open(at("pieces.h5"), "rb") as file:
+        ok(file.read() == whole, "the same bytes in pieces")
+
+    # By the liquid: wherever it went first, the dry body is the same.
+    chain = ["-p", SCENE]
+    run("pack", "-q", *chain, "-s", "counts=[3,3,3]", "-o", at("p.h5"))
+    run("tessellate", "-q", *chain, at("p.h5"), "-o", at("t.h5"))
+    run("merge-nodes", "-q", *chain, at("t.h5"), "-o", at("n.h5"))
+    run("dry", "-q", *chain, at("n.h5"), "-o", at("d.h5"))
+    run("force-protocol", "-q", *chain, "-s", "gravity=1e-9", "-s", "force_scale=1e-9",
+        "-s", "steps=20", at("d.h5"), "-o", at("f.h5"))
+    ends = []
+    for law in "uniform", "liquid":
+        settings = [f"shrinkage.law={law}", "shrinkage.strain=1e-5", "support=fixed",
+                    "engine=explicit", "normal_stiffness=20", "shear_stiffness=20",
+                    "friction=0", "gravity=0", "damping_ratio=0.5", "local_damping=0",
+                    "bond.normal_strength=1e12", "bond.shear_strength=1e12",
+                    "time_step_safety=null", "cycles=1000", "tolerance=1e-7",
+                    "unsettled=count", "most_cycles=20000", "snapshots=[0.5,0]"]
+        run("dem-replay", "-q", *chain, *(word for setting in settings
+                                          for word in ("-s", setting)),
+            at("f.h5"), "-o", at(f"{law}.h5"))
+        ends.append(h5py.File(at(f"{law}.h5"))["snapshots/displacement"][:])
+    ok(near(ends[1][-1], ends[0][-1], 1e-3), "liquid: when dry, as uniform")
+    ok(not near(ends[1][0], ends[0][0], 1e-2), "half dry, not as uniform")
+
+    ok(refused("dem-replay", "-p", at("layer.json"), "-s", "shrinkage.strain=0",
+               at("layer.h5"), "-o", at("no.h5")), "a packing that does not shrink: refused")
+    ok(refused("dem-replay", "-p", at("layer.json"), "-s", "engine=quasi-static",
+               at("layer.h5"), "-o", at("no.h5")), "equilibria: refused")
+    ok(refused("dem-replay", "-p", at("layer.json"), "-s", "shrinkage.law=liquid",
+               at("layer.h5"), "-o", at("no.h5")), "no liquid to go by: refused")
+done()
