@@ -172,6 +172,15 @@ static void make_bonds(struct packing *packing, const struct contacts *contacts,
                parameters->touching_gap);
 }
 
+static void take_slab(const struct pack_parameters *parameters, struct domain *domain,
+                      struct packing *packing)
+{
+    struct reason reason;
+    const enum status status = cut_slab(parameters->slab_lower, parameters->slab_upper,
+                                        domain, packing, &reason);
+    if (status) die(status, "%s", reason.text);
+}
+
 // The domain grows with the box, so that the porosity counts the layer.
 static void make_layer(struct domain *domain, int wall, struct packing *packing)
 {
@@ -218,6 +227,7 @@ int main(int argc, char **argv)
     struct reached reached = {.dynamic = false};
     if (parameters.method != METHOD_IMPORT)
         make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
+    take_slab(&parameters, &domain, &packing);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);

@@ -285,6 +285,46 @@ static enum status move_grains_there(const struct making *making,
     }
 }
 
+static enum status check_soft(const struct pack_parameters *parameters,
+                              struct reason *reason)
+{
+    const struct dynamics_parameters *how = &parameters->dynamics;
+    if (parameters->dimensions != 3 || parameters->domain.shape != DOMAIN_BOX ||
+        parameters->domain.cut != CUT_NONE)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.method: soft_spheres fill boxes in three dimensions, "
+                      "without a cut");
+    if (how->target != TARGET_SETTLED && how->target != TARGET_POROSITY)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.target: must be settled or porosity for soft_spheres");
+    if (how->target == TARGET_POROSITY && !(how->value < 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.target_value: must be given, and below 1, for a porosity");
+    return STATUS_OK;
+}
+
+static enum status make_soft(const struct pack_parameters *parameters,
+                             struct progress *progress, struct domain *domain,
+                             struct packing *packing, struct reason *reason)
+{
+    struct sizes sizes;
+    struct domain_parameters box;
+    enum status status = check_soft(parameters, reason);
+    if (!status) status = sizes_prepare(&parameters->sizes, &sizes, reason);
+    if (status) return status;
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng_set(random, (unsigned long)parameters->seed);
+    int count = 0;
+    status = give_box(parameters, &sizes, random, &box, reason);
+    if (!status) status = domain_init(&box, 3, sizes.largest, domain, reason);
+    if (!status)
+        status = count_grains(parameters, domain, &sizes, random, &count, reason);
+    if (!status)
+        status = soft_spheres(domain, &sizes, count, random, progress, packing, reason);
+    gsl_rng_free(random);
+    return status;
+}
+
 // The sizes of given grains: moving needs only their range. Nothing is drawn from it.
 static struct sizes sizes_of(const struct packing *packing)
 {
@@ -354,6 +394,8 @@ enum status make_grains(const struct pack_parameters *parameters, bool given,
     case METHOD_EXPLOSIVE_REPULSION:
         return make_moved(parameters, given, progress, domain, packing, reached,
                           reason);
+    case METHOD_SOFT_SPHERES:
+        return make_soft(parameters, progress, domain, packing, reason);
     default:
         return make_lattice(parameters, domain, packing, reason);
     }

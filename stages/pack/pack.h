@@ -63,6 +63,19 @@ enum status random_sequential(const struct domain *domain, const struct sizes *s
                               struct progress *progress, struct packing *packing,
                               struct reason *reason);
 
+// COUNT grains at random points, relaxed until they overlap no more or are jammed, in a
+// box that may repeat. STATUS_NOT_CONVERGED: neither within its steps. On success the
+// caller frees *PACKING. RANDOM advances.
+enum status soft_spheres(const struct domain *domain, const struct sizes *sizes,
+                         int count, gsl_rng *random, struct progress *progress,
+                         struct packing *packing, struct reason *reason);
+
+// Keeps the grains with their centres from LOWER to UPPER along z, m, NAN: no end, and
+// no bonds; PACKING and DOMAIN end on them and no longer repeat along z. Nothing if
+// both are NAN. STATUS_BAD_DATA: no box, LOWER not below UPPER, or no grain between.
+enum status cut_slab(double lower, double upper, struct domain *domain,
+                     struct packing *packing, struct reason *reason);
+
 // ---- inward spiral ------------------------------------------------------------------
 
 // [K 3.1.2], in two dimensions: grains along the walls first, then each where it

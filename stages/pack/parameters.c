@@ -10,7 +10,7 @@ const struct parameter pack_table[] = {
     {"method", PARAMETER_CHOICE, "1", "\"cubic\"", AT(method),
      .choices = "square|cubic|bcc|fcc|hexagonal|honeycomb|poisson|random_sequential|"
                 "inward_spiral|deposition|radius_expansion|domain_contraction|"
-                "explosive_repulsion|import",
+                "explosive_repulsion|import|soft_spheres",
      .text = "lattice of touching grains (square: one layer in x and z; hexagonal: "
              "close packing, or the triangular layer where dimensions=2; honeycomb: "
              "layers of hexagonal rings in x and z, one on the other, whose network "
@@ -20,7 +20,9 @@ const struct parameter pack_table[] = {
              "touching two others [K 3.1.2]; by moving grains [K 3.1.1]: deposition by "
              "gravity, radius_expansion and domain_contraction from loose points, "
              "explosive_repulsion of overlapping ones, all of grains drawn or those of "
-             "INPUT, which keep their sizes; import: grains of INPUT as they are"},
+             "INPUT, which keep their sizes; import: grains of INPUT as they are; "
+             "soft_spheres: random points, relaxed until they overlap no more or are "
+             "jammed, in a box that may repeat"},
     {"dimensions", PARAMETER_INTEGER, "1", "3", AT(dimensions), BETWEEN(2, 3),
      .text = "2: all centres in one plane y, in a box one largest diameter thick "
              "(square and inward_spiral always; import: the extra layer is one row)"},
@@ -148,6 +150,12 @@ const struct parameter pack_table[] = {
     {"densify", PARAMETER_BOOLEAN, "1", "false", AT(densify),
      .text = "inward_spiral: fill voids with grains that touch three others, down to "
              "sizes.smallest"},
+    {"slab.lower", PARAMETER_NUMBER_OR_NULL, "m", "null", AT(slab_lower),
+     .text = "keep only a slab of the packing, of grains with their centres above this "
+             "height: as walls order grains, a rough floor is cut from a thicker "
+             "packing; the box then ends on the slab and does not repeat along z"},
+    {"slab.upper", PARAMETER_NUMBER_OR_NULL, "m", "null", AT(slab_upper),
+     .text = "and below this"},
     {"extra_layer", PARAMETER_BOOLEAN, "1", "false", AT(extra_layer),
      .text = "lay a regular layer of grains of the mean radius on the outermost grain "
              "of extra_side, across the box, for the boundary layer [K 3.3.5]; they "

@@ -27,7 +27,8 @@ enum method {
     METHOD_RADIUS_EXPANSION,    // densify, grains grow
     METHOD_DOMAIN_CONTRACTION,  // densify, the box contracts
     METHOD_EXPLOSIVE_REPULSION, // repel
-    METHOD_IMPORT               // grains of INPUT as they are: make_import
+    METHOD_IMPORT,              // grains of INPUT as they are: make_import
+    METHOD_SOFT_SPHERES         // relaxed random points: soft_spheres
 };
 
 // Which grains are bonded: none, those that touch within touching_gap, or as INPUT
@@ -48,8 +49,9 @@ struct pack_parameters {
     struct size_parameters sizes;
     struct domain_parameters domain;
     int64_t seed, most_trials, frame;
-    bool densify, extra_layer; // fill voids of the spiral; add a layer [K 3.3.5]
-    int extra_side;            // wall that the extra layer is at
+    bool densify, extra_layer;     // fill voids of the spiral; add a layer [K 3.3.5]
+    int extra_side;                // wall that the extra layer is at
+    double slab_lower, slab_upper; // heights of a slab that is kept; m
     struct dynamics_parameters dynamics;
     double touching_gap;   // of the sum of two radii
     double import_scale;   // m per unit of INPUT
