@@ -15,9 +15,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct ensemble ensemble_init(int most_runs, struct classes classes)
+struct ensemble ensemble_init(int most_runs, struct classes classes, bool patterns)
 {
     return (struct ensemble){.classes = classes,
+                             .pattern =
+                                 patterns ? NEW_ARRAY(struct pattern, most_runs) : NULL,
                              .statistics = NEW_ARRAY(struct run_statistics, most_runs),
                              .counts = counts_init(classes),
                              .squares = squares_init(classes),
@@ -34,6 +36,9 @@ void ensemble_free(struct ensemble *ensemble)
     free(ensemble->snapshot_saturation);
     free(ensemble->deformation);
     drying_front_free(&ensemble->front);
+    for (int r = 0; ensemble->pattern && r < ensemble->n_run; r++)
+        pattern_free(&ensemble->pattern[r]);
+    free(ensemble->pattern);
     *ensemble = (struct ensemble){0};
 }
 
@@ -140,6 +145,9 @@ void ensemble_add(struct ensemble *ensemble, const struct run *run,
     note_front(value, run, liquid, counts.place, ensemble);
     value[UNSETTLED_LOADS] = run->n_unsettled;
     value[UNSETTLED_CRACKS] = run->n_unsettled_crack;
+    if (ensemble->pattern)
+        ensemble->pattern[ensemble->n_run - 1] =
+            find_pattern(run, ensemble->classes.n_interval, value);
     counts_free(&counts);
     count_cracks(&ensemble->counts, run, ensemble->classes);
     add_orientation(&ensemble->orientation, run);

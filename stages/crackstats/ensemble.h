@@ -7,6 +7,7 @@
 #include "deformation.h"
 #include "drying_front_correlation.h"
 #include "orientation.h"
+#include "pattern.h"
 #include "run_statistics.h"
 #include "scatter.h"
 #include "sizes.h"
@@ -25,12 +26,13 @@ struct ensemble {
     double *snapshot_saturation;     // (n_snapshot) at which they were taken
     struct deformation *deformation; // (n_snapshot) of the largest fragment
     int n_liquid;                    // runs whose drying is known
+    struct pattern *pattern;         // (n_run) NULL: not asked for
     struct drying_front front; // over the n_liquid runs; reported if these are all
 };
 
-// An empty ensemble with room for MOST_RUNS runs, counted by CLASSES. The caller frees
-// it with ensemble_free.
-struct ensemble ensemble_init(int most_runs, struct classes classes);
+// An empty ensemble with room for MOST_RUNS runs, counted by CLASSES, with PATTERNS
+// seen from above if they are wanted. The caller frees it with ensemble_free.
+struct ensemble ensemble_init(int most_runs, struct classes classes, bool patterns);
 void ensemble_free(struct ensemble *ensemble);
 
 // Adds RUN, which must have as many snapshots as the runs before. LIQUID is the drying

@@ -15,7 +15,7 @@
 struct crackstats_parameters {
     int64_t slices, intervals, first_group;
     double confidence;
-    bool same_bonds, paired;
+    bool same_bonds, paired, polygons;
 };
 
 #define AT(member) offsetof(struct crackstats_parameters, member)
@@ -40,6 +40,11 @@ static const struct parameter table[] = {
     {"same_bonds", PARAMETER_BOOLEAN, "1", "true", AT(same_bonds),
      .text = "all runs must have as many bonds as the first; false: they may have "
              "other packings"},
+    {"polygons", PARAMETER_BOOLEAN, "1", "false", AT(polygons),
+     .text =
+         "cracks of a layer as objects, seen from above: damage of upright columns, "
+         "cracks that go through, polygons, islands, junctions; none where there is "
+         "no pattern"},
     {0}};
 
 static const struct stage stage = {
@@ -170,7 +175,8 @@ static struct ensemble read_study(const struct invocation *invocation, json_t *d
 {
     struct ensemble ensemble = ensemble_init(
         invocation->n_input,
-        (struct classes){(int)parameters->slices, (int)parameters->intervals});
+        (struct classes){(int)parameters->slices, (int)parameters->intervals},
+        parameters->polygons);
     struct reading reading = {
         .invocation = invocation, .digests = digests, .seen = json_object()};
     struct run run;
@@ -209,6 +215,7 @@ int main(int argc, char **argv)
     report_tables(counted, &ensemble, parameters.confidence);
     report_statistics(counted, &ensemble, parameters.confidence,
                       (struct groups){(int)parameters.first_group, parameters.paired});
+    report_patterns(counted, &ensemble);
     char model[250];
     snprintf(model, sizeof model,
              "counts by mode, drying period, slice, saturation and time; connected "

@@ -61,6 +61,8 @@ struct run read_run(const struct artifact *response)
     if (artifact_has_dataset(response, "/weight_cracks/bond"))
         run.weight_crack =
             artifact_get(response, "/weight_cracks/bond", &run.n_weight_crack);
+    if (artifact_has_dataset(response, "/particles/held"))
+        run.held = artifact_get(response, "/particles/held", NULL);
     run.first_period_end =
         artifact_get_number(response, "/summary/first_period_end_time");
     int n_time;

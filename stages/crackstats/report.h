@@ -13,6 +13,9 @@
 // orientation.
 void report_tables(json_t *report, const struct ensemble *ensemble, double confidence);
 
+// Adds patterns: the map of each run, where patterns were asked for.
+void report_patterns(json_t *report, const struct ensemble *ensemble);
+
 // Adds what the intervals are of, and the statistics: mean, sd and confidence_interval
 // over the runs (null for one run), those of each run, and the test of the groups.
 struct groups {

@@ -57,7 +57,8 @@ static json_t *interval_of(struct column column, enum statistic fact)
 static json_t *table(struct column column, json_t *of(struct column, enum statistic))
 {
     json_t *object = json_object();
-    for (int f = 0; f < STATISTIC_COUNT; f++) {
+    const int count = column.ensemble->pattern ? STATISTIC_COUNT : POLYGONS_FOUND;
+    for (int f = 0; f < count; f++) {
         json_t *group = json_object_get(object, statistic_names[f].group);
         if (!group) {
             group = json_object();

@@ -56,6 +56,7 @@ void run_free(struct run *run)
     free(run->saturation);
     free(run->mode);
     free(run->weight_crack);
+    free(run->held);
     free(run->snapshot_saturation);
     free(run->displacement);
     free(run->intact);

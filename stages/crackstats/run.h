@@ -17,6 +17,7 @@ struct run {
     uint8_t *mode;                // (n_crack) 0 normal, 1 shear
     int n_weight_crack;           // under the weight alone, before drying
     int32_t *weight_crack;        // (n_weight_crack) bonds
+    uint8_t *held;                // (n_particle) 1: held; NULL: not known
     double first_period_end, end; // s; end: of the last load
     int n_unsettled;              // loads that did not come to rest
     int n_unsettled_crack;        // cracks that opened under them

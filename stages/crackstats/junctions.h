@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Junctions: where three or more polygons meet, and the angles between cracks there.
+#ifndef CRAQUELURE_CRACKSTATS_JUNCTIONS_H
+#define CRAQUELURE_CRACKSTATS_JUNCTIONS_H
+
+#include "polygons.h"
+
+struct junctions {
+    int count;           // all
+    int measured;        // with borders that a circle about them crosses, 3 or more
+    double mean_largest; // degrees: mean over those of the largest angle of each
+    double t_share;      // of those: largest angle above 155 degrees
+    double y_share;      // largest angle below 135 degrees
+};
+
+// All 0 where there is no pattern.
+struct junctions find_junctions(const struct columns *columns,
+                                const struct polygons *polygons);
+
+#endif
