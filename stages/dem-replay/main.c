@@ -404,6 +404,15 @@ static void warn_if_loose(const struct packing *packing,
                "force and moment)");
 }
 
+static void choose_bridges(struct replay_parameters *parameters,
+                           const struct artifact *input, bool quiet)
+{
+    char difference[300];
+    const struct artifact *forces = is_packing(input) ? NULL : input;
+    if (*complete_bridges(parameters, forces, difference, sizeof difference) && !quiet)
+        report("bridges: %s", difference);
+}
+
 int main(int argc, char **argv)
 {
     struct replay_parameters parameters = {0};
@@ -411,11 +420,7 @@ int main(int argc, char **argv)
     struct replay_settings *settings = &parameters.settings;
     complete_settings(&parameters, invocation.threads);
     struct artifact *input = open_input(invocation.inputs[0]);
-    char difference[300];
-    if (*complete_bridges(&parameters, is_packing(input) ? NULL : input, difference,
-                          sizeof difference) &&
-        !invocation.quiet)
-        report("bridges: %s", difference);
+    choose_bridges(&parameters, input, invocation.quiet);
     struct packing packing = artifact_get_packing(input);
     check_sizes(&packing, input->path);
     struct load load = read_load(input, &parameters, packing.n_particle);

@@ -47,6 +47,15 @@ static void describe(const struct replay_settings *settings, char *text, size_t 
              settings->bond.kind == DEM_CONTACT_BOND ? "contact" : "parallel");
 }
 
+static enum status check(const struct replay_settings *settings, struct reason *reason)
+{
+    if (settings->shrinkage.strain > 0 && settings->liquid.volume > 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.shrinkage.strain: must be 0 with liquid bridges "
+                      "(bridges.volume), which do not follow grains that shrink");
+    return STATUS_OK;
+}
+
 // ---- begin --------------------------------------------------------------------------
 
 // Strengths of the bonds; NULL: all have the mean.
@@ -118,6 +127,12 @@ static enum status begin(struct run *run, struct reason *reason)
     if (status || !earlier) return status;
     if (saved_by_equilibria(earlier))
         return refuse_other_engine(reason, "quasi-static");
+    const bool shrank = find_array(earlier->array, earlier->count, "shrinkage");
+    if (shrank != run->load->shrinks)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "was kept by a replay %s shrinkage, and only one like it can go "
+                      "on from there (dem-replay.shrinkage.strain)",
+                      shrank ? "with" : "without");
     return restore_dem(run, earlier, reason);
 }
 
@@ -467,6 +482,7 @@ static void end(struct run *run)
 
 const struct replay_engine replay_by_cycles = {
     .first_step = STEP_WHOLE,
+    .check = check,
     .describe = describe,
     .begin = begin,
     .restore = restore,

@@ -184,11 +184,31 @@ static void rescale(struct packing *packing, struct domain *domain, double unit)
     }
 }
 
+// Radii first: as many as were counted to fill the box, and the same.
+static enum status place_at_random(const struct domain *domain,
+                                   const struct sizes *sizes, int count,
+                                   gsl_rng *random, struct packing *packing,
+                                   struct reason *reason)
+{
+    double *radius = sizes_draw_many(sizes, count, random);
+    enum status status = domain_check_filling(domain, radius, count, 1, reason);
+    *packing = packing_in(domain, count);
+    for (int i = 0; !status && i < count; i++) {
+        packing->radius[i] = radius[i];
+        if (!domain_random_point(domain, radius[i], random, &packing->position[i]))
+            status = refuse(reason, STATUS_BAD_DATA,
+                            "pack.upper: must leave room for the grains");
+    }
+    free(radius);
+    if (status) packing_free(packing);
+    return status;
+}
+
 enum status soft_spheres(const struct domain *domain, const struct sizes *sizes,
                          int count, gsl_rng *random, struct progress *progress,
                          struct packing *packing, struct reason *reason)
 {
-    enum status status = poisson_points(domain, sizes, count, random, packing, reason);
+    enum status status = place_at_random(domain, sizes, count, random, packing, reason);
     if (status) return status;
     struct domain scaled = *domain;
     double sum = 0, smallest = INFINITY;

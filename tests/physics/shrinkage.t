@@ -158,6 +158,22 @@ with scratch() as folder:
                at("layer.h5"), "-o", at("no.h5")), "a packing that does not shrink: refused")
     ok(refused("dem-replay", "-p", at("layer.json"), "-s", "engine=quasi-static",
                at("layer.h5"), "-o", at("no.h5")), "equilibria: refused")
+    ok(refused("dem-replay", "-p", at("layer.json"), "-s", "bridges.volume=1e-22",
+               at("layer.h5"), "-o", at("no.h5")), "with liquid bridges: refused")
+
+    # In two replays, one from the state that the other kept.
+    two = ["-p", SCENE, "-q", "-s", "support=fixed", "-s", "engine=explicit", "-s",
+           "cycles=64", "-s", "tolerance=null"]
+    run("dem-replay", *two, "-s", "keep_state=true", at("f.h5"), "-o", at("kept.h5"))
+    ok(refused("dem-replay", *two, "-s", "shrinkage.strain=1e-5", at("f.h5"), at("kept.h5"),
+               "-o", at("no.h5")), "from a state that had not shrunk: refused")
+    two += ["-s", "shrinkage.strain=1e-5"]
+    run("dem-replay", *two, "-s", "keep_state=true", at("f.h5"), "-o", at("kept.h5"))
+    run("dem-replay", *two, at("f.h5"), at("kept.h5"), "-o", at("further.h5"))
+    ends = [h5py.File(at(name))["engine/shrinkage"][:] if name == "kept.h5" else
+            h5py.File(at(name))["snapshots/displacement"][:] for name in ("kept.h5", "further.h5")]
+    ok(np.max(np.abs(ends[0])) == 1e-5 and np.isfinite(ends[1]).all(),
+       "a later replay goes on from the shrunken grains")
     ok(refused("dem-replay", "-p", at("layer.json"), "-s", "shrinkage.law=liquid",
                at("layer.h5"), "-o", at("no.h5")), "no liquid to go by: refused")
 done()

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Soft spheres: below jamming none overlap, above it forces balance on every grain, in
+# boxes that repeat and between walls; and slabs cut from packings.
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, read, run, scratch
+
+R = 1e-6
+EDGE = np.array([16 * R, 14 * R, 18 * R])
+PACK = {"method": "soft_spheres", "radius": R, "upper": list(EDGE), "target": "porosity",
+        "sizes": {"distribution": "uniform", "smallest": 0.8 * R, "largest": 1.2 * R}}
+
+
+def overlaps(position, radius, periodic):
+    """Forces of unit stiffness on the grains, those of contacts, with a pair's own loop."""
+    apart = position[None] - position[:, None]
+    apart -= np.where(periodic, EDGE * np.rint(apart / EDGE), 0)
+    distance = np.linalg.norm(apart, axis=2)
+    np.fill_diagonal(distance, np.inf)
+    overlap = np.maximum(radius[None] + radius[:, None] - distance, 0)
+    force = -(overlap[..., None] * apart / distance[..., None])
+    force[~np.isfinite(force)] = 0
+    net = force.sum(axis=1)
+    low, high = (np.maximum(radius[:, None] - gap, 0) for gap in (position, EDGE - position))
+    net += np.where(periodic, 0, 2 * (low - high))
+    return net, overlap[overlap > 0]
+
+
+def refused(*settings):
+    words = [word for setting in settings for word in ("-s", setting)]
+    process = subprocess.run([f"{BIN}/pack", "-q", "-p", scene, *words, "-o", os.devnull],
+                             capture_output=True, text=True)
+    return process.returncode == 65 and process.stderr.count("\n") == 1
+
+
+with scratch() as folder:
+    def at(name):
+        return os.path.join(folder, name)
+
+    scene = at("scene.json")
+    with open(scene, "w") as file:
+        json.dump({"pack": PACK}, file)
+
+    def pack(name, *settings):
+        run("pack", "-q", "-p", scene, *(w for s in settings for w in ("-s", s)), "-o", at(name))
+        return h5py.File(at(name))
+
+    for periodic in [True] * 3, [True, False, True]:
+        flags = "periodic=" + json.dumps(periodic)
+        for porosity in 0.45, 0.33:
+            file = pack("whole.h5", flags, f"target_value={porosity}")
+            place, radius = file["particles/position"][:], file["particles/radius"][:]
+            net, contact = overlaps(place, radius, periodic)
+            what = f"porosity {porosity}, repeats along {periodic.count(True)} axes"
+            solid = 4 / 3 * np.pi * (radius ** 3).sum()
+            ok(abs(1 - solid / EDGE.prod() - porosity) < 4 / 3 * np.pi * (1.2 * R) ** 3 / EDGE.prod(),
+               f"{what}: as many grains as the porosity asks for")
+            if porosity == 0.45:
+                ok(not len(contact) or contact.max() < 2e-6 * R, f"{what}: none overlap")
+            else:
+                ok(np.linalg.norm(net, axis=1).mean() < 1.1e-2 * contact.mean(),
+                   f"{what}: forces balance", [np.linalg.norm(net, axis=1).mean(), contact.mean()])
+    pack("again.h5", flags, "target_value=0.33", )
+    ok(read(at("again.h5")) == read(at("whole.h5")), "the same bytes again")
+
+    periodic = "periodic=[true,true,true]"
+    whole = pack("whole.h5", periodic, "target_value=0.36")
+    place, radius = whole["particles/position"][:], whole["particles/radius"][:]
+    slab = pack("slab.h5", periodic, "target_value=0.36", f"slab.lower={4 * R}", f"slab.upper={13 * R}")
+    inside = (place[:, 2] >= 4 * R) & (place[:, 2] <= 13 * R)
+    ok((slab["particles/position"][:] == place[inside]).all()
+       and (slab["particles/radius"][:] == radius[inside]).all(), "a slab has the grains between")
+    ends = [(place - radius[:, None])[inside, 2].min(), (place + radius[:, None])[inside, 2].max()]
+    ok([slab["domain/lower"][2], slab["domain/upper"][2]] == ends
+       and list(slab["domain/periodic"][:]) == [1, 1, 0], "its box ends on them")
+    ok(refused("target_value=0.4", f"slab.lower={9 * R}", f"slab.upper={5 * R}"), "upside down: refused")
+    ok(refused("target_value=0.4", f"slab.lower={90 * R}"), "without a grain: refused")
+    ok(refused("dimensions=2"), "soft discs: refused")
+    ok(refused("target=coordination", "target_value=6"), "to a coordination: refused")
+    ok(refused(), "a porosity that is not said: refused")
+done()
