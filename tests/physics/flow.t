@@ -213,7 +213,7 @@ with scratch() as folder:
     # Empty space above a bed: the permeability of the bed is that of a box that ends where it
     # ends, and a line says which is which.
     run("pack", "-q", "--set", "method=deposition", "--set", "count=400", "--set", "radius=5e-4",
-        "--set", "seed=2", "-o", at("bed"))
+        "--set", "seed=2", "--set", "dynamics.time_step_safety=0.1", "-o", at("bed"))
     with h5py.File(at("bed")) as bed:
         top = (bed["particles/position"][:, 2] + bed["particles/radius"][:]).max()
     found = {}
