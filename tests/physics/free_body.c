@@ -185,7 +185,8 @@ static struct vector *moved(const struct packing *packing, struct vector *force,
                             const struct replay_settings *settings)
 {
     double none[1] = {0};
-    const struct load load = {1, none, none, force};
+    const struct load load = {
+        .n_time = 1, .time = none, .saturation = none, .force = force};
     struct response response = replay_or_fail(packing, &load, settings);
     struct vector *displacement =
         duplicate(response.snapshot[0].displacement, N, sizeof *displacement);

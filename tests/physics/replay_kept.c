@@ -79,7 +79,10 @@ static void make(struct scene *scene, enum engine engine, enum support support)
         scene->time[k] = k;
         scene->saturation[k] = 1 - k / (LOADS - 1.0);
     }
-    scene->load = (struct load){LOADS, scene->time, scene->saturation, scene->force};
+    scene->load = (struct load){.n_time = LOADS,
+                                .time = scene->time,
+                                .saturation = scene->saturation,
+                                .force = scene->force};
     scene->settings = (struct replay_settings){
         .material = setup.material,
         .bond = setup.bond,
@@ -197,7 +200,8 @@ static void nothing_breaks_on_the_way(void **state)
         uint8_t held[] = {1, 0};
         double time[] = {0}, saturation[] = {1};
         struct vector force[] = {{0, 0, 0}, {weight, 0, 0}};
-        const struct load load = {1, time, saturation, force};
+        const struct load load = {
+            .n_time = 1, .time = time, .saturation = saturation, .force = force};
         struct replay_settings settings = {.material = setup.material,
                                            .bond = setup.bond,
                                            .held = held,

@@ -33,7 +33,8 @@ static bool breaks(double strength, int64_t ramp)
     uint8_t held[] = {1, 0};
     double time[] = {0}, saturation[] = {1};
     struct vector force[] = {{0, 0, 0}, {pull, 0, 0}};
-    const struct load load = {1, time, saturation, force};
+    const struct load load = {
+        .n_time = 1, .time = time, .saturation = saturation, .force = force};
     struct replay_settings settings = {.material = setup.material,
                                        .bond = setup.bond,
                                        .held = held,
