@@ -10,7 +10,9 @@
 // fall. So no grain may be faster than a tenth of sqrt(2 g R).
 //
 // With an adapted step (dynamics.c) grains have landed when the ratio is below LANDED
-// and none is faster than sqrt(2 g R). From then on each has its own weight.
+// and none is faster than sqrt(2 g R), but not before twice the time of a free fall
+// from the top: a large grain that lands first carries most of the weight. From then on
+// each has its own weight.
 #include "dynamics.h"
 #include "pack.h"
 
@@ -93,12 +95,31 @@ static void close_box(const struct making *making)
     packing->upper = domain->upper;
 }
 
+// The largest speed, of a grain of own inertia with as much kinetic energy: with the
+// mean grain's, a light one that falls is slow.
+static double largest_own_speed(const struct making *making, const struct dem *dem)
+{
+    const struct packing *packing = making->packing;
+    const int n = packing->n_particle;
+    struct vector *velocity = NEW_ARRAY(struct vector, n);
+    dem_velocities(dem, velocity);
+    double mean = 0, largest = 0;
+    for (int i = 0; i < n && is_adapted(making->how); i++)
+        mean += pow(packing->radius[i], 3) / n;
+    for (int i = 0; i < n; i++) {
+        const double heavier = fmax(1, mean / pow(packing->radius[i], 3));
+        largest = fmax(largest, norm(velocity[i]) * sqrt(heavier));
+    }
+    free(velocity);
+    return largest;
+}
+
 // At rest: K 4.20 is met, and no single grain still falls, which a mean would not show.
 static bool is_settled(const struct making *making, const struct dem *dem,
                        double typical_speed)
 {
     return dem_unbalanced_ratio(dem) < making->how->tolerance &&
-           largest_speed(making, dem) < 0.1 * typical_speed;
+           largest_own_speed(making, dem) < 0.1 * typical_speed;
 }
 
 // The state of the settling besides the engine, as the numbers of a checkpoint.
@@ -129,8 +150,11 @@ static void follow(const struct making *making, struct dem *dem, double height,
 {
     if (!is_adapted(making->how)) return;
     const double slow = fall_speed(making, mean_radius(making->packing));
-    const bool falls = settling->landed == 0 && !(dem_unbalanced_ratio(dem) < LANDED &&
-                                                  largest_speed(making, dem) < slow);
+    const double fall_time = fall_speed(making, height) / making->how->gravity;
+    const bool lands = dem_time(dem) > 2 * fall_time &&
+                       dem_unbalanced_ratio(dem) < LANDED &&
+                       largest_speed(making, dem) < slow;
+    const bool falls = settling->landed == 0 && !lands;
     if (!falls && settling->landed == 0) land_grains(dem);
     settling->landed = !falls;
     adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
