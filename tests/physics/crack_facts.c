@@ -56,7 +56,7 @@ static void test_facts_and_sums_of_two_runs(void **state)
 {
     (void)state;
     struct run run = broken_columns();
-    struct ensemble study = ensemble_init(2, classes);
+    struct ensemble study = ensemble_init(2, classes, false);
     for (int k = 0; k < 2; k++) {
         ensemble_add(&study, &run, NULL);
         assert_facts(&study, k);
@@ -198,7 +198,7 @@ static void test_cracks_beside_their_liquid(void **state)
     run.time[0] = 1.25;
     run.time[1] = 2.5;
     run.end = 3;
-    struct ensemble study = ensemble_init(2, classes);
+    struct ensemble study = ensemble_init(2, classes, false);
     for (int k = 0; k < 2; k++) {
         ensemble_add(&study, &run, &liquid);
         assert_within(study.statistics[k].value[FRONT_SATURATION], 0.25 * (0.75 + 0.5),
