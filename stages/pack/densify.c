@@ -177,7 +177,7 @@ enum { CYCLES = 20 }; // of the pace, between two strains
 static enum status run_a_while(struct densification *d, struct reason *reason)
 {
     enum { ADAPT_EVERY = 25 };
-    const bool adapted = is_adapted(d->making->how);
+    const bool adapted = is_adapted(d->making);
     const double cycles = CYCLES * (adapted ? d->pace / dem_time_step(d->dem) : 1);
     const enum status status = dem_run(d->dem, (int64_t)fmax(1, rint(cycles)), reason);
     d->strains++;
@@ -300,7 +300,7 @@ static enum status rest(struct densification *d, struct reason *reason)
     while (dem_cycle(d->dem) < how->most_cycles) {
         const enum status status = dem_run(d->dem, CYCLES_OF_REST, reason);
         if (status != STATUS_OK) return status;
-        if (is_adapted(how)) adapt_step(d->dem, false, 0);
+        if (is_adapted(d->making)) adapt_step(d->dem, false, 0);
         const double ratio = dem_unbalanced_ratio(d->dem);
         if (ratio < how->tolerance && largest_speed(d->making, d->dem) < still)
             return STATUS_OK;
@@ -382,7 +382,7 @@ static double pace_of(const struct densification *d)
 {
     const struct making *making = d->making;
     const struct packing *packing = making->packing;
-    if (!is_adapted(making->how)) return dem_time_step(d->dem);
+    if (!is_adapted(making)) return dem_time_step(d->dem);
     double mass = 0;
     for (int i = 0; i < packing->n_particle; i++) {
         const double r = packing->radius[i];
@@ -527,7 +527,7 @@ enum status densify(const struct making *making, int count, bool grow,
     making->reached->growth = grow ? shrunk : 1;
     thicken_layer(making);
     const struct vector none = {0, 0, 0};
-    status = start_dynamics(making, stiffness, making->how->safety, none, wall, n_wall,
+    status = start_dynamics(making, stiffness, step_safety(making), none, wall, n_wall,
                             &d.dem, reason);
     if (status == STATUS_OK) d.pace = pace_of(&d);
     if (status == STATUS_OK) status = restore_protocol(&d, reason);

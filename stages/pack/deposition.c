@@ -104,7 +104,7 @@ static double largest_own_speed(const struct making *making, const struct dem *d
     struct vector *velocity = NEW_ARRAY(struct vector, n);
     dem_velocities(dem, velocity);
     double mean = 0, largest = 0;
-    for (int i = 0; i < n && is_adapted(making->how); i++)
+    for (int i = 0; i < n && is_adapted(making); i++)
         mean += pow(packing->radius[i], 3) / n;
     for (int i = 0; i < n; i++) {
         const double heavier = fmax(1, mean / pow(packing->radius[i], 3));
@@ -148,7 +148,7 @@ static double mean_radius(const struct packing *packing)
 static void follow(const struct making *making, struct dem *dem, double height,
                    struct settling *settling)
 {
-    if (!is_adapted(making->how)) return;
+    if (!is_adapted(making)) return;
     const double slow = fall_speed(making, mean_radius(making->packing));
     const double fall_time = fall_speed(making, height) / making->how->gravity;
     const bool lands = dem_time(dem) > 2 * fall_time &&
@@ -175,7 +175,7 @@ static void show_progress(const struct making *making, const struct dem *dem,
 static enum status settle(const struct making *making, double height, struct dem *dem,
                           struct reason *reason)
 {
-    const bool adapted = is_adapted(making->how);
+    const bool adapted = is_adapted(making);
     const int check_every = adapted ? 200 : 500;
     const double typical_speed = fall_speed(making, mean_radius(making->packing));
     struct settling settling = {.landed = !adapted};
@@ -242,7 +242,7 @@ enum status deposit(const struct making *making, int count, struct reason *reaso
     const int n_wall = domain_walls(&tall, making->how, open, wall);
     const struct vector down = {0, 0, -making->how->gravity};
     struct dem *dem = NULL;
-    status = start_dynamics(making, stiffness_for(making), making->how->safety, down,
+    status = start_dynamics(making, stiffness_for(making), step_safety(making), down,
                             wall, n_wall, &dem, reason);
     if (status == STATUS_OK) status = check_fall(making, &tall, dem, reason);
     if (status == STATUS_OK)

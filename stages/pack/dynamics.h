@@ -122,9 +122,15 @@ enum status start_dynamics(const struct making *making, double stiffness, double
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
 
+// Of the time step [K 4.47], for start_dynamics. As the user says, else fixed_safety:
+// 0.1; step_safety: 0.1 where radii are wide and NAN, an adapted step, where they are
+// not.
+double fixed_safety(const struct making *making);
+double step_safety(const struct making *making);
+
 // Whether the step is adapted; if so the caller calls adapt_step every few hundred
 // cycles.
-bool is_adapted(const struct dynamics_parameters *how);
+bool is_adapted(const struct making *making);
 
 // Adapts the step of DEM to the contacts of now and to grains of SPEED (m/s) or, if
 // some are, faster; while grains FALL, to contacts that may form.

@@ -138,7 +138,8 @@ const struct parameter pack_table[] = {
      .text =
          "time step over the critical one of two grains [K 4.47], fixed; null: near "
          "the stability limit of the contacts as they form, and no grain has less "
-         "inertia than the mean one (explosive_repulsion: 0.1)"},
+         "inertia than the mean one (0.1 in explosive_repulsion, and if the mean grain "
+         "weighs more than 30 times the smallest)"},
     {"dynamics.tolerance", PARAMETER_NUMBER, "1", "1e-4", AT(dynamics.tolerance),
      BETWEEN(1e-12, 1), .text = "unbalanced ratio at rest [K 4.20]"},
     {"dynamics.most_cycles", PARAMETER_INTEGER, "1", "3000000",

@@ -15,13 +15,6 @@
 
 enum { BATCHES = 100, CYCLES_A_BATCH = 200 };
 
-// Of the time step, fixed also where the user leaves the choice.
-static double safety(const struct making *making)
-{
-    const double usual = 0.1;
-    return isnan(making->how->safety) ? usual : making->how->safety;
-}
-
 // Two coincident centres have no direction in which to separate: each grain is moved by
 // up to a thousandth of its radius.
 static void separate_coincident(const struct making *making)
@@ -45,7 +38,7 @@ static enum status push_apart(const struct making *making, double stiffness,
 {
     struct dem *dem = NULL;
     const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, 0.1 * safety(making), none,
+    enum status status = start_dynamics(making, stiffness, 0.1 * fixed_safety(making), none,
                                         wall, n_wall, &dem, reason);
     if (status == STATUS_OK) status = dem_run(dem, CYCLES_A_BATCH, reason);
     if (status == STATUS_OK) {
@@ -64,7 +57,7 @@ static enum status come_to_rest(const struct making *making, double stiffness,
     const struct dynamics_parameters *how = making->how;
     struct dem *dem = NULL;
     const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, safety(making), none, wall,
+    enum status status = start_dynamics(making, stiffness, fixed_safety(making), none, wall,
                                         n_wall, &dem, reason);
     if (status == STATUS_OK)
         status = dem_run_until(dem, how->tolerance, how->most_cycles, reason);

@@ -287,6 +287,16 @@ deepest = (made.overlap / np.minimum(made.r[made.i], made.r[made.j])).max()
 ok(deepest < 0.01 and made.reached["unbalanced_ratio"] < 1e-4 and len(made.i) > 20,
    "rough grains of 1:20 come to rest", (deepest, made.reached))
 
+# By steps near the stability limit, fines settle into another fabric (docs/packings.md): the
+# step stays a tenth of the critical one.
+steps = []
+for second in 0.2, 0.5:
+    made = Packing("method=deposition", "count=30", "sizes.distribution=two_mode", "radius=1",
+                   f"sizes.second_radius={second}", "sizes.second_share=0.5")
+    lightest = 4 / 3 * pi * 2500 * second**3
+    steps.append(made.reached["time_step"] / (2 * sqrt(lightest / made.k)))
+ok(abs(steps[0] - 0.1) < 1e-6 and steps[1] > 0.2, "the step is fixed where radii are wide", steps)
+
 # ---- explosive repulsion ----------------------------------------------------------------
 
 for settings in ["upper=[10,10,10]", "count=300"], ["dimensions=2", "upper=[10,0,10]", "count=35"]:
