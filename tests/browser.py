@@ -67,7 +67,8 @@ class Browser:
         name, said = event.get("method"), event.get("params", {})
         if name == "Network.requestWillBeSent":
             self.requests.append(said["request"]["url"][:200])
-        if name == "Runtime.exceptionThrown" or name == "Log.entryAdded" \
+        if name == "Runtime.exceptionThrown" \
+                or name == "Log.entryAdded" and said["entry"]["level"] in ["error", "warning"] \
                 or name == "Runtime.consoleAPICalled" and said["type"] in ["error", "warning"]:
             self.errors.append(json.dumps(said)[:500])
 

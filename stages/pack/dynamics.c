@@ -10,8 +10,8 @@
 // that small grains do not shorten the time step.
 //
 // A fixed step is a share of [K 4.47], a tenth where radii are wide. An adapted one is
-// ADAPTED_SHARE of the stability limit (dem/relaxation.c), found again as contacts form,
-// and under gravity
+// ADAPTED_SHARE of the stability limit (dem/relaxation.c), found again as contacts
+// form, and under gravity
 //     inertia = max(m, mean m).
 // While grains fall, weights are in proportion to it; at rest each has its own.
 #include "dynamics.h"

@@ -38,8 +38,8 @@ static enum status push_apart(const struct making *making, double stiffness,
 {
     struct dem *dem = NULL;
     const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, 0.1 * fixed_safety(making), none,
-                                        wall, n_wall, &dem, reason);
+    enum status status = start_dynamics(making, stiffness, 0.1 * fixed_safety(making),
+                                        none, wall, n_wall, &dem, reason);
     if (status == STATUS_OK) status = dem_run(dem, CYCLES_A_BATCH, reason);
     if (status == STATUS_OK) {
         take_grains(making, dem);
@@ -57,8 +57,8 @@ static enum status come_to_rest(const struct making *making, double stiffness,
     const struct dynamics_parameters *how = making->how;
     struct dem *dem = NULL;
     const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, fixed_safety(making), none, wall,
-                                        n_wall, &dem, reason);
+    enum status status = start_dynamics(making, stiffness, fixed_safety(making), none,
+                                        wall, n_wall, &dem, reason);
     if (status == STATUS_OK)
         status = dem_run_until(dem, how->tolerance, how->most_cycles, reason);
     if (status == STATUS_OK) {

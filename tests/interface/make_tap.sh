@@ -16,7 +16,7 @@ is()
         echo "ok $tests - $1"
     else
         echo "not ok $tests - $1"
-        printf '# expected: %s\n#      got: %s\n' "${2//$'\n'/$'\n# '}" "${3//$'\n'/$'\n# '}"
+        printf '# expected: %s\n#      got: %s\n' "${2//$'\n'/$'\n# '}" "${3//$'\n'/$'\n# '}" >&2
     fi
 }
 
