@@ -170,7 +170,8 @@ static enum status make_drawn(const struct pack_parameters *parameters,
 // ---- moving grains ------------------------------------------------------------------
 
 // The porosity that the method usually reaches. Random close packing of equal spheres
-// has 0.36, of discs 0.16; grains that fall end a little looser.
+// has 0.36, of discs 0.16; grains that fall end a little looser. Soft spheres come to
+// rest in any number where they do not quite jam.
 static double expected_porosity(const struct pack_parameters *parameters)
 {
     const struct dynamics_parameters *how = &parameters->dynamics;
@@ -181,6 +182,7 @@ static double expected_porosity(const struct pack_parameters *parameters)
         return parameters->dimensions == 2 ? 0.6 : 0.72;
     if (parameters->method == METHOD_DEPOSITION)
         return parameters->dimensions == 2 ? 0.2 : 0.42;
+    if (parameters->method == METHOD_SOFT_SPHERES) return 0.4;
     return parameters->dimensions == 2 ? 0.17 : 0.37;
 }
 
@@ -300,6 +302,9 @@ static enum status check_soft(const struct pack_parameters *parameters,
     if (how->target == TARGET_POROSITY && !(how->value < 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "pack.target_value: must be given, and below 1, for a porosity");
+    if (how->target == TARGET_SETTLED && !isnan(how->value))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "pack.target_value: must be null where pack.target is settled");
     return STATUS_OK;
 }
 

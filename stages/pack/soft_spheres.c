@@ -166,7 +166,8 @@ static enum status relax(struct relaxation *r, const struct domain *domain,
     return refuse(
         reason, STATUS_NOT_CONVERGED,
         "soft_spheres: after %d steps the mean force on a grain is %g of that "
-        "of a contact: another seed, or a larger porosity (pack.target_value)",
+        "of a contact: another seed, or a larger porosity (pack.target=porosity, "
+        "pack.target_value)",
         MOST_STEPS, s.mean_force / r->contact_force);
 }
 

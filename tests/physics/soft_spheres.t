@@ -86,4 +86,5 @@ with scratch() as folder:
     ok(refused("dimensions=2"), "soft discs: refused")
     ok(refused("target=coordination", "target_value=6"), "to a coordination: refused")
     ok(refused(), "a porosity that is not said: refused")
+    ok(refused("target=settled", "target_value=0.45"), "a porosity that is not the target: refused")
 done()
