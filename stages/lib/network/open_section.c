@@ -277,10 +277,11 @@ double narrowest_place(const struct open_section *section)
 
 static double diffusive_resistance(const struct open_section *section)
 {
-    double sum = 0;
-    for (double from = 0, to; from < section->length; from = to) {
-        to = next_break(section, from);
+    double sum = 0, from = 0;
+    while (from < section->length) {
+        const double to = next_break(section, from);
         sum += resistance(area_between(section, from, to), from, to);
+        from = to;
     }
     return sum;
 }

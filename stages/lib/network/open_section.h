@@ -55,13 +55,12 @@ struct throat_shape {
 // The open area at Z, m2 (0 or below: closed), and the rim of grains and walls there,
 // m.
 double open_area(const struct open_section *section, double z);
-double open_rim(const struct open_section *section, double z);
 
 // Resistances of thin slices in series,
 //     1 / diffusion = int dz / area,  1 / flow = int dz / slice conductance.
 // A section that is closed anywhere conducts nothing: all 0 but the radius. A throat
 // without length conducts as one of 1e-12 of its grains' size would.
-struct throat_shape section_shape(const struct open_section *section);
+struct throat_shape section_shape(const struct open_section *given);
 
 // Where the section is narrowest, m from the first node: at the mean plane of the
 // centres, within the throat.

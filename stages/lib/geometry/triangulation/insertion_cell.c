@@ -155,7 +155,7 @@ static bool has_walls(const struct live_cell *cell)
 void find_centres(const struct weighted_point *point, const struct wall_box *box,
                   struct live_cell *cells, const int32_t *which, int count)
 {
-    struct live_cell *cell[4] = {NULL};
+    struct live_cell *cell[4] = {cells, cells, cells, cells};
     int n = 0;
     for (int k = 0; k < count; k++) {
         cell[n] = &cells[which[k]];
