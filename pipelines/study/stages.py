@@ -15,10 +15,11 @@ MADE = {"packing": ("pack", [], "h5"), "check": ("check", ["packing"], "json"),
         "flow": ("flow", ["packing"], "h5"), "invasion": ("invade", ["network"], "h5"),
         "drying": ("dry", ["network"], "h5"), "forces": ("force-protocol", ["drying"], "h5"),
         "response": ("dem-replay", ["forces"], "h5"), "crackstats": ("crackstats", ["response", "drying"], "json"),
-        "motion": ("simulate", ["packing"], "h5"), "shearstats": ("shearstats", ["motion"], "h5")}
+        "motion": ("simulate", ["packing"], "h5"), "shearstats": ("shearstats", ["motion"], "h5"),
+        "rings": ("rings", ["packing"], "json")}
 STAGES = {stage: kind for kind, (stage, _, _) in MADE.items()}
 # Stages that take what they lack from the section conditions.
-SHARING = ("dry", "invade", "force-protocol", "dem-replay", "bridge")
+SHARING = ("dry", "invade", "force-protocol", "dem-replay", "bridge", "rings")
 # What draws random numbers: the seed, and whether it is used by a section.
 DRAWN = {"dry.throat_radius.seed": lambda s: s.get("throat_radius", {}).get("distribution", "network") != "network",
          "pack.seed": lambda s: s.get("method", "cubic") not in (

@@ -15,7 +15,7 @@ for place in ["out/result", "./out/result", "out/../out/result", "beside/result"
             f"--checkpoint {place}: is where the output goes: name another file")
 for program in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay",
                 "deform", "crackstats", "report", "bridge", "flow", "invade", "inspect", "simulate",
-                "shearstats"]:
+                "shearstats", "rings"]:
     refused_in_shell(f"{program} refuses an unknown option", USAGE,
                      f"$BIN/{program} --nonsense", ".*: unrecognized option '--nonsense'")
 refused_in_shell("an option without its argument is refused", USAGE, "$BIN/pack --set",

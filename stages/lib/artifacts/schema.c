@@ -16,7 +16,7 @@
 extern const char schema_packing[], schema_network[], schema_drying[], schema_forces[],
     schema_response[], schema_crackstats[], schema_engine[], schema_restart[],
     schema_bridge[], schema_flow[], schema_invasion[], schema_check[], schema_motion[],
-    schema_shearstats[];
+    schema_shearstats[], schema_rings[];
 
 static const struct {
     const char *name, *text;
@@ -26,7 +26,8 @@ static const struct {
                {"engine", schema_engine},     {"restart", schema_restart},
                {"bridge", schema_bridge},     {"flow", schema_flow},
                {"invasion", schema_invasion}, {"check", schema_check},
-               {"motion", schema_motion},     {"shearstats", schema_shearstats}};
+               {"motion", schema_motion},     {"shearstats", schema_shearstats},
+               {"rings", schema_rings}};
 
 // A schema that does not parse is our own error.
 static json_t *load(const char *text)

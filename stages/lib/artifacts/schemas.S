@@ -22,5 +22,6 @@
     schema schema_check, "schemas/check.json"
     schema schema_motion, "schemas/motion.json"
     schema schema_shearstats, "schemas/shearstats.json"
+    schema schema_rings, "schemas/rings.json"
 
     .section .note.GNU-stack, "", @progbits

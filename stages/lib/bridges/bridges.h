@@ -99,6 +99,13 @@ enum status bridge_solve(const struct bridge *bridge, double separation,
 enum status bridge_solve_rupture(const struct bridge *bridge,
                                  struct bridge_state *state, struct reason *reason);
 
+// The bridge at SEPARATION whose liquid is joined to other liquid of SUCTION (above 0,
+// Pa): VOLUME of BRIDGE is not looked at, but returned in *VOLUME (m3). STATUS_NO: none
+// holds out against that suction there.
+enum status bridge_at_suction(const struct bridge *bridge, double separation,
+                              double suction, struct bridge_state *state,
+                              double *volume, struct reason *reason);
+
 // Its meridian: height above the pole of the first body and radius (m) at COUNT places,
 // at least 2, evenly along it. Both (COUNT), in m.
 void bridge_profile(const struct bridge *bridge, const struct bridge_state *state,

@@ -33,6 +33,13 @@ enum status find_rupture(const struct bodies *bodies, double volume,
 enum status find_turning(const struct bodies *bodies, double volume,
                          struct equilibrium *found);
 
+// The bridge at GAP whose liquid is joined to other liquid of the mean curvature
+// CURVATURE (above 0), and its VOLUME: on the branch on which a higher curvature leaves
+// less. STATUS_NO: no bridge holds out against it there; STATUS_NOT_CONVERGED: none was
+// found though the gap is short.
+enum status find_at_curvature(const struct bodies *bodies, double curvature, double gap,
+                              struct equilibrium *found, double *volume);
+
 // Bridges at COUNT rising gaps from contact to rupture, each from those before it:
 // several times faster than one by one where gaps are close. Gaps beyond rupture by
 // less than 1e-4 of it get the last bridge.

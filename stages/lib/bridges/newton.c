@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Damped Newton's method for the four equations of a bridge, scaled to order one:
 //     residual[0], [1] = miss / length   (slope and radius at the second body),
-//     residual[2] = (volume + shared) / V - 1,
+//     residual[2] = (volume + shared) / V - 1, or turn - H length,
 //     residual[3] = (gap - wanted gap) / length, or direction.(x - x_from) - distance.
 // For equal bodies residual[0] is reach_1 - reach_2 in logarithms: only symmetric
 // bridges. A step is at most `longest` and is halved while it does not reduce the
@@ -38,11 +38,16 @@ struct system system_at(const struct problem *problem, const struct unknowns *un
                                      (span.gap - problem->gap) * scale}};
     if (problem->from) is.residual[3] = -problem->distance;
     if (problem->symmetric) is.residual[0] = unknowns->at[0] - unknowns->at[1];
+    if (problem->curvature)
+        is.residual[2] = arc.turn - *problem->curvature * arc.length;
     for (int n = 0; n < ARC_NUMBERS; n++) {
         is.slope[0][n] =
             problem->symmetric ? (n == 0) - (n == 1) : span.miss_slope[0][n] * scale;
         is.slope[1][n] = span.miss_slope[1][n] * scale;
         is.slope[2][n] = span.volume_slope[n] * share;
+        if (problem->curvature)
+            is.slope[2][n] =
+                (n == ARC_TURN) - (n == ARC_LENGTH) * *problem->curvature * arc.length;
         is.slope[3][n] = span.gap_slope[n] * scale;
         if (!problem->from) continue;
         is.slope[3][n] = problem->direction[n];

@@ -8,9 +8,10 @@
 #include <stdbool.h>
 
 // Newton's method on four unknowns: the logarithms of both reaches and of the length,
-// and the turn. Three of the four equations are always the same (slope and radius at
-// the second body, volume); the fourth gives the gap, or how far to go along a
-// direction from a known bridge. At rupture two bridges of one gap meet: there the
+// and the turn. Two of the four equations are always the same (slope and radius at the
+// second body). The third gives the volume, or the mean curvature that a suction asks
+// for; the fourth gives the gap, or how far to go along a direction from a known
+// bridge. At rupture two bridges of one gap meet: there the
 // first is singular, the second is not.
 struct unknowns {
     double at[ARC_NUMBERS];
@@ -19,8 +20,9 @@ struct unknowns {
 // In effective radii. It owns nothing.
 struct problem {
     const struct bodies *bodies;
-    double volume; // of the liquid
-    double shared; // by overlapping bodies: the arc spans so much less
+    double volume;           // of the liquid
+    const double *curvature; // NULL: the volume is given; else H takes its place
+    double shared;           // by overlapping bodies: the arc spans so much less
     double gap;
     bool symmetric;  // of two equal bodies only bridges with equal ends are looked for
     bool to_turning; // the break of symmetry does not count

@@ -97,6 +97,26 @@ enum status bridge_solve(const struct bridge *bridge, double separation,
     return STATUS_OK;
 }
 
+enum status bridge_at_suction(const struct bridge *bridge, double separation,
+                              double suction, struct bridge_state *state,
+                              double *volume, struct reason *reason)
+{
+    const double scale = bridge_effective_radius(bridge);
+    const struct bodies bodies = bodies_of(bridge);
+    const double curvature = scale * suction / (2 * bridge->surface_tension);
+    struct equilibrium found;
+    const enum status status =
+        find_at_curvature(&bodies, curvature, separation / scale, &found, volume);
+    if (status)
+        return refuse(reason, status,
+                      "no bridge at separation %g m holds out against a suction of "
+                      "%g Pa",
+                      separation, suction);
+    *state = state_of(bridge, &bodies, &found);
+    *volume *= scale * scale * scale;
+    return STATUS_OK;
+}
+
 // The volume nearest to VOLUME, to 2 %, at which rupture is found, if it is at 1: both
 // over the cube of the effective radius.
 static double nearest_that_ruptures(const struct bodies *bodies, double volume)

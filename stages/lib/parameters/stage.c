@@ -21,12 +21,12 @@
 
 // Sections a scene may hold: the stages, whether this one or another, and what several
 // of them share.
-static const char *const sections[] = {"pack",       "tessellate",     "merge-nodes",
-                                       "dry",        "force-protocol", "dem-replay",
-                                       "deform",     "crackstats",     "import-network",
-                                       "invade",     "bridge",         "flow",
-                                       "check",      "report",         "simulate",
-                                       "shearstats", "conditions",     NULL};
+static const char *const sections[] = {
+    "pack",           "tessellate", "merge-nodes", "dry",
+    "force-protocol", "dem-replay", "deform",      "crackstats",
+    "import-network", "invade",     "bridge",      "flow",
+    "check",          "report",     "simulate",    "shearstats",
+    "rings",          "conditions", NULL};
 
 enum {
     KEY_THREADS = 256,

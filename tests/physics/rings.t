@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Rings of liquid in packings: one ring against its differential equation integrated here, sums
+# over a lattice in closed form, and the suction at which three rings meet.
+import filecmp
+import json
+import os
+import subprocess
+import sys
+from math import asin, cos, pi, radians, sin
+
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, run, scratch
+
+R, TENSION = 1e-6, 0.07
+folder = scratch()
+
+
+def at(name):
+    return os.path.join(folder.name, name)
+
+
+def packing(name, grains, upper, *settings):
+    np.savetxt(at(name + ".txt"), grains, fmt="%.17g")
+    words = [w for s in settings for w in ("-s", s)]
+    run("pack", "-q", "-s", "method=import", "-s", "lower=[0,0,0]", "-s", f"upper={list(upper)}", "-s", "bonds=none",
+        "-s", "check=none", *words, at(name + ".txt"), "-o", at(name))
+    return at(name)
+
+
+def rings(path, suctions, angle=0, *options):
+    said = run("rings", "-q", "-s", f"suctions={list(suctions)}", "-s", f"surface_tension={TENSION}", "-s",
+               f"contact_angle={angle}", "-s", "fluid=other", *options, path)
+    return json.loads(said)
+
+
+# ---- one ring ---------------------------------------------------------------------------
+
+def meridian(neck, suction, centre, steps=700):
+    """From the neck of a ring to the sphere of radius 1 around CENTRE on the axis, lengths in R and
+    suction in tension / R: angle under which it arrives, volume, half-filling; None: it does not."""
+    def rate(state):
+        r, slope = state[0], state[2]
+        return np.array([sin(slope), cos(slope), suction + cos(slope) / r, pi * r * r * cos(slope)])
+    state, h = np.array([neck, 0, 0, 0.]), 2.5 / suction / steps
+    for _ in range(4 * steps):
+        a = rate(state)
+        b = rate(state + h / 2 * a)
+        c = rate(state + h / 2 * b)
+        new = state + h / 6 * (a + 2 * b + 2 * c + rate(state + h * c))
+        inside = new[0]**2 + (centre - new[1])**2 - 1
+        if inside < 0:
+            before = state[0]**2 + (centre - state[1])**2 - 1
+            state = state + (new - state) * before / (before - inside)
+            filling = asin(min(1, state[0]))
+            cap = pi * (1 - cos(filling))**2 * (2 + cos(filling)) / 3
+            return pi / 2 - filling - state[2], 2 * (state[3] - cap), filling
+        state = new
+        if state[2] > pi / 2:
+            return None
+    return None
+
+
+def ring(gap, suction, angle):
+    """Force and volume (in R and tension) of the ring between equal spheres: the widest whose
+    contact angle is right."""
+    miss = lambda y: (lambda m: -1 if m is None else m[0] - angle)(meridian(y, suction, 1 + gap / 2, 300))
+    wide = 0.8
+    while miss(wide) < 0:
+        wide *= 0.95
+    # the angle grows as the neck shrinks, until it is too narrow for the sphere to be met
+    low, high = wide, wide / 0.95
+    exact = lambda y: (lambda m: -1 if m is None else m[0] - angle)(meridian(y, suction, 1 + gap / 2))
+    for _ in range(40):
+        middle = (low + high) / 2
+        if exact(middle) < 0:
+            high = middle
+        else:
+            low = middle
+    return 2 * pi * low + pi * low**2 * suction, *meridian(low, suction, 1 + gap / 2)[1:]
+
+
+box = [4 * R, 4 * R, 6 * R]
+for gap, suction, angle in (0, 5, 0), (0, 30, 40), (0.05, 8, 0), (0.02, 12, 30):
+    two = packing("two", [[2 * R, 2 * R, 1.5 * R, R], [2 * R, 2 * R, (3.5 + gap) * R, R]], box)
+    said = rings(two, [suction * TENSION / R], angle)
+    force, volume, _ = ring(gap, suction, radians(angle))
+    got = said["stress"][0] * 3 * np.prod(box) / ((2 + gap) * R) / (TENSION * R)
+    ok(said["rings"] == [1] and abs(said["volume"][0] / R**3 / volume - 1) < 1e-4 and abs(got / force - 1) < 1e-5,
+       f"a ring at suction {suction}, gap {gap}, {angle} degrees, is that of Young and Laplace",
+       (said["volume"][0] / R**3, volume, got, force))
+
+two = packing("two", [[2 * R, 2 * R, 1.5 * R, R], [2 * R, 2 * R, 3.5 * R, R]], box)
+said = rings(two, [1e5 * TENSION / R], 20)
+force = said["stress"][0] * 3 * np.prod(box) / (2 * R) / (TENSION * R)
+ok(abs(force / (2 * pi * cos(radians(20))) - 1) < 5e-3, "a small ring pulls by 2 pi R tension cos(angle)", force)
+
+# ---- sums -------------------------------------------------------------------------------
+
+grid = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+lattice = packing("lattice", np.column_stack([(2 * grid + 1) * R, np.full(64, R)]), [8 * R] * 3,
+                  "periodic=[true,true,true]")
+suctions = [6 * TENSION / R, 60 * TENSION / R]
+said, one = rings(lattice, suctions, 10), rings(two, suctions, 10)
+pull = np.array(one["stress"]) * 3 * np.prod(box) / (2 * R)
+ok(said["rings"] == [192, 192] and np.allclose(said["volume"], 192 * np.array(one["volume"]), rtol=1e-12, atol=0)
+   and np.allclose(said["stress"], pull / (2 * R)**2, rtol=1e-12, atol=0),
+   "a cubic lattice has three rings a grain and is pressed by a force over (2 R)^2", said)
+ok(np.allclose(said["stress_tensor"], [np.eye(3) * s for s in said["stress"]], rtol=1e-12, atol=1e-9 * said["stress"][0]),
+   "alike along all axes")
+solid = 64 * 4 / 3 * pi * R**3
+ok(np.allclose(said["content"], np.array(said["volume"]) / solid, rtol=1e-12) and np.allclose(
+    said["saturation"], np.array(said["volume"]) / ((8 * R)**3 - solid), rtol=1e-12), "over grains and void")
+
+# Three grains that touch: rings meet where each fills 30 degrees.
+low, high = 2., 8.
+for _ in range(14):
+    middle = (low + high) / 2
+    low, high = (middle, high) if ring(0, middle, 0)[2] > pi / 6 else (low, middle)
+three = packing("three", [[2 * R, 2 * R, 2 * R, R], [4 * R, 2 * R, 2 * R, R], [3 * R, (2 + 3**0.5) * R, 2 * R, R]],
+                [6 * R] * 3)
+said = rings(three, [0.99 * low * TENSION / R, 1.01 * low * TENSION / R])
+ok(said["meeting"] == [3, 0] and said["rings"] == [3, 3], "three rings meet when each fills 30 degrees", (low, said["meeting"]))
+
+# ---- a packing --------------------------------------------------------------------------
+
+run("pack", "-q", "-s", "method=soft_spheres", "-s", "count=200", "-s", f"radius={R}", "-s", "sizes.distribution=uniform",
+    "-s", f"sizes.smallest={0.5 * R}", "-s", f"sizes.largest={1.5 * R}", "-s", "bonds=none", "-o", at("random"))
+for threads in "1", "2":
+    run("rings", "-q", "--threads", threads, at("random"), "-o", at("said-" + threads))
+ok(filecmp.cmp(at("said-1"), at("said-2"), shallow=False), "one thread and two give the same bytes")
+with open(at("said-1"), encoding="utf-8") as file:
+    said = json.load(file)
+ok(all(np.diff(said["volume"]) < 0) and all(np.diff(said["rings"]) <= 0) and said["rings"][-1] >= said["contacts"] > 200,
+   "with suction rings shrink, and those in gaps break", said)
+
+for settings, line in [(["suctions=[2e5,1e5]"], "rings.suctions: must be above 0 and rise, got 100000 Pa"),
+                       (["to=4"], "rings.to: must be above rings.from"),
+                       (["contact_angle=90"], "rings.contact_angle")]:
+    refused = subprocess.run([f"{BIN}/rings", "-q", *[w for s in settings for w in ("-s", s)], at("random")],
+                             capture_output=True, text=True, check=False)
+    ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings[0]} is refused",
+       refused.stderr)
+done()
