@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The picture of a study, of the kind that fits its axes: curves with bands over a number, a map of two,
 points by group, or points over each column of a table of runs."""
+import copy
 import itertools
 import math
 import os
@@ -114,9 +115,11 @@ def range_of(measure, rows, summary):
 
 
 def draw_figure(rows, summary, study, folder):
-    """figure.svg; gives its name, nothing where no run is there."""
+    """figure.svg, of what was measured anywhere; gives its name, nothing where no run is there."""
+    study = copy.copy(study)
+    study.measures = [m for m in study.measures if any(r[m.name] is not None for r in rows)]
     kind = kind_of(study)
-    if kind == "none" or not any(line["status"] == "done" for line in rows):
+    if kind == "none" or not study.measures or not any(line["status"] == "done" for line in rows):
         return []
     tables, settings = {"curves": curves, "strip": strip, "map": heat_map, "scatter": scatter}[kind](rows, summary, study)
     panels = min(len(study.measures), MOST_PANELS)

@@ -12,15 +12,20 @@ TAKEN = {"first": lambda x: x.flat[0], "last": lambda x: x.flat[-1], "least": np
 
 
 def of_json(document, path):
-    """The member at PATH, names and numbers with points or slashes between; None: there is none."""
-    for name in re.split(r"[./]", path.strip("/")):
+    """The member at PATH, names and numbers with points or slashes between, or after a blank what is
+    taken of a list; None: there is none."""
+    where, _, taken = path.partition(" ")
+    for name in re.split(r"[./]", where.strip("/")):
         if isinstance(document, list) and re.fullmatch(r"-?\d+", name) and -len(document) <= int(name) < len(document):
             document = document[int(name)]
         elif isinstance(document, dict) and name in document:
             document = document[name]
         else:
             return None
-    return document
+    if taken not in TAKEN or not isinstance(document, list):
+        return document
+    values = np.array([x for x in document if isinstance(x, (int, float))])
+    return TAKEN[taken](values).item() if values.size else None
 
 
 def of_hdf5(file, path):

@@ -131,6 +131,20 @@ with h5py.File(at("runs/files", paths["drying"])) as drying, h5py.File(at("runs/
 ok(fine and [float(only[name]) for name in ("summary.breakthrough_saturation", "throats.radius.largest", "ten")] == wanted,
    "attributes and datasets are measured too", only)
 
+# Lists of JSON artifacts, and a measure that nothing has: no picture of it, and the others are drawn.
+write("rings.json", {"scene": "scene.json", "seeds": 1, "axes": [{"key": "rings.contact_angle", "values": [0, 30]}],
+                     "set": {"rings.points": 3}, "measure": ["rings:stress last", "rings:rings mean", "rings:nothing"]})
+fine, _, _, wrong = study("make", "rings.json")
+with open(at("runs/rings/runs.json"), encoding="utf-8") as lines:
+    found = json.load(lines)["runs"]
+alone = []
+for one in found:
+    with open(at("runs/rings", one["artifacts"]["rings"]), encoding="utf-8") as lines:
+        alone.append(json.load(lines))
+ok(fine and [[r["stress.last"], r["rings.mean"], r["nothing"]] for r in found]
+   == [[one["stress"][-1], np.mean(one["rings"]), None] for one in alone] and os.path.exists(at("runs/rings/figure.svg")),
+   "lists are measured too, and what is nowhere is left out of the picture", (wrong, found))
+
 # ---- a run that fails ---------------------------------------------------------------------------------
 
 write("replay", f"""#!/bin/bash
