@@ -99,6 +99,7 @@ static void test_end(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_volume),
                                        cmocka_unit_test(test_end)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -15,7 +15,7 @@ plot [1:1000] [1e-6:0.3] for [k=1:3] file(angles[k]) using 1:(apart($2, $6)) wit
     for [k=1:3] file(angles[k]) using 1:2 with lines dashtype (3, 4) linecolor rgb colours[k] title (k == 3 ? "some rings meet" : "")
 
 set title "Stress by which rings hold the packing"
-set xlabel "saturation"; set ylabel "stress, γ / R"; unset logscale y; set format x "10^{%T}"; set format y "%g"; set key bottom left
-plot [1e-6:0.3] [0:*] for [k=1:3] file(angles[k]) using 2:(apart($4, $6)) with lines linewidth 2 linecolor rgb colours[k] notitle, \
+set xlabel "liquid, share of the void"; set ylabel "stress, γ / R"; unset logscale y; set format x "10^{%T}"; set format y "%g"; set key bottom right
+plot [0.3:1e-6] [0:*] for [k=1:3] file(angles[k]) using 2:(apart($4, $6)) with lines linewidth 2 linecolor rgb colours[k] notitle, \
     for [k=1:3] file(angles[k]) using 2:4 with lines dashtype (3, 4) linecolor rgb colours[k] notitle, \
     tables . "/rumpf.tsv" with lines linewidth 1 linecolor rgb red title "Rumpf, 0°"
