@@ -288,7 +288,7 @@ $(COMPLETION): tools/completion tools/run $(PROGRAMS)
 
 # What `craquelure run`, `demo` and `study` need, as it lies in the tree: all pipelines but studies that
 # are rules; samples and documents.
-pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/* study/* studies/*.json)))
+pipeline_files := $(filter-out %__pycache__,$(wildcard $(addprefix pipelines/,run/* figures/* lib/* study/* calibrate/* studies/*.json)))
 shared_scripts := tools/memo $(foreach f,$(pipeline_files),$(if $(suffix $f),,$f))
 shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.md docs/pages/* docs/pictures/* \
 	samples/*.json schemas/*.json stages/*/version)

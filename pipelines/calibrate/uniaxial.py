@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numerical uniaxial tests of a packing [K 4.3]: its two end layers are pulled apart, and nothing else
+holds it.
+
+    stress   = force / section of the packing's extent,
+    strain   = symmetric part of the displacement gradient, by least squares over the grains of the
+               middle half,
+    E        = stress / strain along the force,   nu = - mean strain across / strain along,
+    strength = largest stress that the body carried: forces on what was torn off an end do not count.
+"""
+import json
+import os
+import subprocess
+from math import sqrt
+
+import h5py
+import numpy as np
+
+from common import artifact, refuse
+
+BIN = os.environ.get("BIN", "build/bin")
+LAYER = 3  # thickness of the end layers, mean radii
+UNBREAKABLE = 1e30
+# Equilibria without friction: between open contacts it hardly acts (docs/calibration.md).
+FAST = ("engine=quasi-static", "friction=0")
+SLOW = ("engine=explicit", "tolerance=1e-6", "most_cycles=1000000", "ramp=20000")
+
+# Student's t of 95 % for two and three values.
+STUDENT = {2: 12.706, 3: 4.303}
+KEYS = ("normal_stiffness", "shear_stiffness", "bond.normal_stiffness", "bond.shear_stiffness",
+        "bond.normal_strength", "bond.shear_strength")
+
+
+def effective(scene):
+    """The parameters of dem-replay in SCENE that the tests change."""
+    said = subprocess.run([f"{BIN}/dem-replay", "-p", scene, "--parameters"], capture_output=True, text=True, check=False)
+    if said.returncode:
+        refuse(said.returncode, said.stderr.strip())
+    parameters = json.loads(said.stdout)
+    found = {}
+    for key in KEYS:
+        value = parameters
+        for name in key.split("."):
+            value = value[name]
+        found[key] = value
+    if parameters["bond"]["kind"] != "parallel":
+        refuse(65, f"{scene}: dem-replay.bond.kind: must be parallel")
+    return found
+
+
+def scaled(bond, what, factor):
+    return {key: value * (factor if key.endswith(what) else 1) for key, value in bond.items()}
+
+
+def stretch(bond):
+    """Of bonds where they break, m."""
+    return max(bond["bond.normal_strength"], bond["bond.shear_strength"]) / min(bond["bond.normal_stiffness"], bond["bond.shear_stiffness"])
+
+
+def components(count, pairs):
+    """For each grain a grain of its piece, the same for all of it."""
+    of = np.arange(count)
+    while True:
+        lower = np.minimum(of[pairs[:, 0]], of[pairs[:, 1]])
+        before = of.copy()
+        np.minimum.at(of, pairs[:, 0], lower)
+        np.minimum.at(of, pairs[:, 1], lower)
+        of = of[of]
+        if np.array_equal(of, before):
+            return of
+
+
+class Specimen:
+    """The packing of SCENE, made in FOLDER; tests of it leave their files there."""
+
+    def __init__(self, scene, folder, inputs=()):
+        self.scene, self.folder = scene, folder
+        self.packing = os.path.join(folder, "packing.h5")
+        self.stage("pack", *inputs, "-o", self.packing)
+        with artifact(self.packing, "packing") as file:
+            self.x, self.r = file["particles/position"][:], file["particles/radius"][:]
+            if file["domain/periodic"][:].any():
+                refuse(65, f"{scene}: pack.periodic: the packing has no ends to pull at")
+        if len(self.r) < 8:
+            refuse(65, f"{scene}: {len(self.r)} grains are too few to be pulled at")
+        self.lower, self.upper = (self.x - self.r[:, None]).min(axis=0), (self.x + self.r[:, None]).max(axis=0)
+        self.middle, self.edge = (self.lower + self.upper) / 2, self.upper - self.lower
+
+    def stage(self, name, *words):
+        ended = subprocess.run([f"{BIN}/{name}", "-q", "-p", self.scene, *words], stderr=subprocess.PIPE, text=True, check=False)
+        if ended.returncode:
+            refuse(ended.returncode, (ended.stderr.strip().splitlines() or [f"{name} failed"])[-1])
+
+    def section(self, axis):
+        return np.prod(self.edge) / self.edge[axis]
+
+    def ends(self, axis):
+        layer = LAYER * self.r.mean()
+        return self.x[:, axis] < self.lower[axis] + layer, self.x[:, axis] > self.upper[axis] - layer
+
+    def write_forces(self, path, axis, stresses):
+        """Forces in proportion to the sections of the grains of each end layer, a stress a second."""
+        force = np.zeros((len(stresses), len(self.r), 3))
+        for end, sign in zip(self.ends(axis), (-1, 1)):
+            share = np.where(end, self.r**2, 0)
+            force[:, :, axis] += sign * self.section(axis) * np.outer(stresses, share / share.sum())
+        with h5py.File(self.packing) as packing, h5py.File(path, "w") as file:
+            for name in packing:
+                if name != "VTKHDF":
+                    packing.copy(name, file)
+            file.attrs["schema"] = "craquelure/forces/1"
+            for name in list(file["summary"].attrs):
+                del file["summary"].attrs[name]
+            file["summary"].attrs.update(capillary_pressure=0., force_scale=1., first_period_end_time=0.,
+                                         largest_force=np.abs(force).max())
+            file["time"] = np.arange(len(stresses), dtype=float)
+            file["saturation"] = np.linspace(1, 0, len(stresses))
+            file["force"] = force
+
+    def pull(self, axis, stresses, bond, how):
+        """The response to STRESSES, an open file."""
+        forces, response = (os.path.join(self.folder, name) for name in ("forces.h5", "response.h5"))
+        self.write_forces(forces, axis, stresses)
+        settings = (*(f"{key}={value!r}" for key, value in bond.items()), "support=free", "gravity=0", "snapshots=[0]",
+                    "shrinkage.strain=0", "bridges.volume=0", *how)
+        self.stage("dem-replay", *(word for setting in settings for word in ("-s", setting)), forces, "-o", response)
+        return artifact(response, "response")
+
+    def moduli(self, axis, bond, how=FAST):
+        """E and nu of bonds that do not break."""
+        whole = {**bond, "bond.normal_strength": UNBREAKABLE, "bond.shear_strength": UNBREAKABLE}
+        stress = 1e-9 * bond["bond.normal_stiffness"] * self.r.mean()
+        with self.pull(axis, [0, stress], whole, how) as file:
+            moved, pairs = file["snapshots/displacement"][-1], file["bonds/particles"][:]
+        piece = components(len(self.r), pairs)
+        largest = piece == np.bincount(piece).argmax()
+        gauge = largest & (np.abs(self.x[:, axis] - self.middle[axis]) < self.edge[axis] / 4)
+        if gauge.sum() < 8 or not all((largest & end).any() for end in self.ends(axis)):
+            refuse(65, f"{self.scene}: bonds do not join the ends of the packing along {'xyz'[axis]}: "
+                       "pack.touching_gap (or dem-replay.bond.by=distance, bond.gap) joins more grains")
+        places = np.column_stack([np.ones(gauge.sum()), self.x[gauge] - self.middle])
+        gradient = np.linalg.lstsq(places, moved[gauge], rcond=None)[0][1:]
+        strain = np.diag(gradient)
+        return stress / strain[axis], -(strain.sum() - strain[axis]) / 2 / strain[axis]
+
+    def moduli_in_time(self, axis, bond):
+        """The same by time steps, with the friction of the scene."""
+        return self.moduli(axis, bond, SLOW)
+
+    def carried_under(self, axis, stresses, bond, how):
+        """What the body carries under each of rising STRESSES: the part whose forces act on both ends of one
+        piece. Forces on grains that were torn off an end count no more."""
+        with self.pull(axis, stresses, bond, how) as file:
+            pairs, broken, time = file["bonds/particles"][:], file["cracks/bond"][:], file["cracks/time"][:]
+        ends = [np.where(end, self.r**2, 0) / self.r[end].dot(self.r[end]) for end in self.ends(axis)]
+        carried = []
+        for k, stress in enumerate(stresses):
+            intact = np.ones(len(pairs), bool)
+            intact[broken[time <= k]] = False
+            piece = components(len(self.r), pairs[intact])
+            shares = [np.bincount(piece, weights=end, minlength=len(self.r)) for end in ends]
+            carried.append(stress * np.minimum(*shares).sum())
+        return np.array(carried)
+
+    def strength(self, axis, bond, steps=60):
+        """The largest stress carried: first by stresses that grow by an eighth, then in STEPS around it.
+        Where displacements are small, stiff bonds break under the same stresses, and keep them small."""
+        stiff = scaled(bond, "stiffness", max(1, stretch(bond) / (1e-7 * self.r.mean())))
+        coarse = max(bond["bond.normal_strength"], bond["bond.shear_strength"]) * 1.125 ** np.arange(-60, 20)
+        most = 0
+        for begin in range(0, len(coarse), 10):  # since a body in pieces is slow
+            some = coarse[begin:begin + 10]
+            carried = self.carried_under(axis, [0, *some], stiff, FAST)
+            most = max(most, carried.max())
+            if carried[-1] < 0.5 * some[-1]:
+                break
+        else:
+            refuse(3, f"{self.scene}: no stress along {'xyz'[axis]} up to {coarse[-1]:.3g} Pa parts the body")
+        near = most * np.concatenate([np.linspace(0, 0.8, 9), np.linspace(0.82, 1.2, steps)])
+        return self.carried_under(axis, near, stiff, FAST).max()
+
+    def strength_in_time(self, axis, bond, guess, steps=120):
+        """The same by time steps: the stress rises evenly to 1.3 times GUESS, in STEPS, so that grains hardly
+        swing."""
+        return self.carried_under(axis, guess * np.linspace(0, 1.3, steps), bond, SLOW).max()
+
+
+# ---- tables -----------------------------------------------------------------------------
+
+def axes_asked():
+    """Those of AXES in the environment, x, y and z unless it says."""
+    letters = os.environ.get("AXES") or "xyz"
+    if not set(letters) <= set("xyz") or len(set(letters)) < len(letters):
+        refuse(64, f"AXES: must be of x, y and z, got {letters}")
+    return ["xyz".index(letter) for letter in letters]
+
+
+def row(name, unit, values, wanted):
+    values = np.asarray(values)
+    interval = f" ± {STUDENT[len(values)] * values.std(ddof=1) / sqrt(len(values)):.2g}" if len(values) > 1 else ""
+    each = " | ".join(f"{v:.4g}" for v in values)
+    wished = "" if wanted is None else f"{wanted:.4g}"
+    print(f"| {name}, {unit} | {wished} | {values.mean():.4g}{interval} | {each} |")
+
+
+def show(axes, found, wanted):
+    """Modulus, Poisson ratio and strength, FOUND along each of AXES, and as they were WANTED (None: they were not)."""
+    print("| | wanted | mean, 95 % | " + " | ".join("xyz"[axis] for axis in axes) + " |\n" + "|---" * (3 + len(axes)) + "|")
+    for name, unit, values, wish in zip(("Young's modulus", "Poisson ratio", "tensile strength"), ("Pa", "1", "Pa"), found, wanted):
+        row(name, unit, values, wish)

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Bonds from a material: a lattice in closed form, and an irregular packing tested again by the other
+# engine, with friction.
+import json
+import os
+import subprocess
+import sys
+from math import pi
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, scratch
+
+folder = scratch()
+
+
+def at(name):
+    return os.path.join(folder.name, name)
+
+
+def calibrate(scene, *wanted, program="calibrate", axes="z"):
+    with open(at("scene.json"), "w", encoding="utf-8") as file:
+        json.dump(scene, file)
+    words = [at("calibrated.json"), *wanted] if program == "calibrate" else wanted
+    return subprocess.run([f"pipelines/calibrate/{program}", at("scene.json"), *words], text=True, capture_output=True,
+                          env={**os.environ, "BIN": BIN, "AXES": axes}, check=False)
+
+
+def numbers(said):
+    """The means of the table."""
+    return [float(line.split("|")[3].split("±")[0]) for line in said.stdout.splitlines()[2:5]]
+
+
+def bond():
+    with open(at("calibrated.json"), encoding="utf-8") as file:
+        return json.load(file)["dem-replay"]["bond"]
+
+
+# ---- a lattice: each column is a chain of bonds -------------------------------------------
+
+R, FRACTION = 1e-6, 0.5
+LATTICE = {"pack": {"method": "cubic", "counts": [4, 4, 8], "radius": R, "bonds": "touching"}, "conditions": {"fluid": "water"},
+           "dem-replay": {"bond": {"normal_stiffness": 1e12, "shear_stiffness": 2e12, "normal_strength": 3e5,
+                                   "shear_strength": 5e5, "radius_fraction": FRACTION}}}
+said = calibrate(LATTICE, "2e9", "none", "1e6")
+area, distance = pi * (FRACTION * R)**2, 2 * R
+modulus = bond()["normal_stiffness"] * area / distance if said.returncode == 0 else 0
+strength = bond()["normal_strength"] * area / distance**2 if said.returncode == 0 else 0
+ok(said.returncode == 0 and abs(modulus / 2e9 - 1) < 1e-3, "a lattice has the modulus of its chains of bonds", (said.stderr, modulus))
+ok(abs(strength / 1e6 - 1) < 0.01, "and their strength", strength)
+ok(abs(bond()["shear_stiffness"] / bond()["normal_stiffness"] - 2) < 1e-5 and abs(
+    bond()["shear_strength"] / bond()["normal_strength"] * 3 / 5 - 1) < 1e-5, "ratios stay where no Poisson ratio is asked for", bond())
+ok(calibrate(LATTICE, "2e9", "0.2", "1e6").returncode == 65, "a cubic lattice has no Poisson ratio but 0")
+
+# ---- grains that settled ------------------------------------------------------------------
+
+SETTLED = {"pack": {"method": "deposition", "count": 60, "radius": 50e-6, "seed": 2, "touching_gap": 0.05, "bonds": "touching",
+                    "sizes": {"distribution": "normal", "spread": 0.2, "smallest": 25e-6, "largest": 75e-6}},
+           "dem-replay": {"bond": {"normal_stiffness": 8e13, "shear_stiffness": 8e13, "normal_strength": 4e5, "shear_strength": 4e5}}}
+said = calibrate(SETTLED, "1e9", "0.15", "1e5")
+found = numbers(said) if said.returncode == 0 else [0] * 3
+ok(abs(found[0] / 1e9 - 1) < 1e-3 and abs(found[1] - 0.15) < 1e-3 and abs(found[2] / 1e5 - 1) < 1e-3,
+   "a packing gets what was asked for", (said.stdout, said.stderr))
+with open(at("calibrated.json"), encoding="utf-8") as file:
+    scene = json.load(file)
+slow = numbers(calibrate(scene, "slow", program="measure"))
+ok(abs(slow[0] / 1e9 - 1) < 0.02 and abs(slow[1] - 0.15) < 0.02, "and has its moduli by time steps with friction", slow)
+
+# ---- what cannot be -----------------------------------------------------------------------
+
+for what, scene, wanted, status, line in [
+        ("no bonds", {**SETTLED, "pack": {**SETTLED["pack"], "bonds": "none"}}, ("1e9", "none", "1e5"), 65, "lists no bond"),
+        ("a Poisson ratio of 0.9", SETTLED, ("1e9", "0.9", "1e5"), 65, "POISSON_RATIO: bonds of this packing give"),
+        ("a modulus in words", SETTLED, ("stiff", "none", "1e5"), 64, "YOUNG_MODULUS: must be a number above 0, got stiff"),
+        ("a strength below 0", SETTLED, ("1e9", "none", "-1"), 64, "TENSILE_STRENGTH: must be a number above 0, got -1"),
+        ("contact bonds", {**SETTLED, "dem-replay": {"bond": {"kind": "contact"}}}, ("1e9", "none", "1e5"), 65, "must be parallel"),
+        ("a periodic box", {"pack": {**LATTICE["pack"], "periodic": [True, True, True]}}, ("1e9", "none", "1e5"), 65, "pack.periodic"),
+        ("an unknown key", {"pack": {"metod": "cubic"}}, ("1e9", "none", "1e5"), 65, "pack.metod: unknown key")]:
+    said = calibrate(scene, *wanted)
+    ok(said.returncode == status and line in said.stderr and said.stderr.count("\n") == 1, f"{what} is refused",
+       (said.returncode, said.stderr))
+ok(calibrate(SETTLED, "1e9", "none", "1e5", axes="q").returncode == 64, "and axes that there are not")
+done()
