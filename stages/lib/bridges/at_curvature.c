@@ -133,10 +133,12 @@ static bool jump(const struct search *search, double curvature, double *most,
 static double thinner(const struct search *search, double curvature,
                       struct unknowns *unknowns, int *steps)
 {
-    const double thickest = 100, least = 1e-9;
+    const double thickest = 100;
+    const int volumes = 50; // down to 1e-9
     double at = -1;
-    for (double volume = thickest; volume > least; volume *= 0.6) {
+    for (int n = 0; n < volumes; n++) {
         struct equilibrium found;
+        const double volume = thickest * pow(0.6, n);
         if (find_equilibrium(search->bodies, volume, search->gap, &found)) {
             if (at > 0) return at;
             continue;
