@@ -12,22 +12,6 @@
 
 #include "geometry/solid_angle.h"
 
-static bool is_wall(const struct corner *corner)
-{
-    return corner->radius <= 0;
-}
-
-static double depth(const struct corner *wall, struct vector at)
-{
-    return wall->plane - dot(wall->normal, at);
-}
-
-// Direction from a grain to another corner; to a wall, its normal.
-static struct vector towards(struct vector from, const struct corner *corner)
-{
-    return is_wall(corner) ? corner->normal : subtract(corner->at, from);
-}
-
 // Solid angle at a grain between the directions U and V of the facet's other corners
 // and both centres.
 static double solid_angle_at(struct vector u, struct vector v, struct vector from,

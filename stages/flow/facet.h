@@ -5,6 +5,7 @@
 #define CRAQUELURE_FLOW_FACET_H
 
 #include "geometry/vector.h"
+#include "network/open_section.h"
 
 #include <stdbool.h>
 
@@ -17,6 +18,23 @@ struct corner {
     struct vector normal;
     double plane; // where the wall stands along its normal
 };
+
+static inline bool is_wall(const struct corner *corner)
+{
+    return corner->radius <= 0;
+}
+
+// How far AT is inside WALL.
+static inline double depth(const struct corner *wall, struct vector at)
+{
+    return wall->plane - dot(wall->normal, at);
+}
+
+// Direction from a grain to another corner; to a wall, its normal.
+static inline struct vector towards(struct vector from, const struct corner *corner)
+{
+    return is_wall(corner) ? corner->normal : subtract(corner->at, from);
+}
 
 struct facet {
     struct vector area; // S_ij n_ij, from the first pore to the second, up to the walls
@@ -35,6 +53,14 @@ struct facet {
 // of the facet without a sign, as Yade does.
 struct facet measure_facet(const struct corner corner[3], struct vector from,
                            struct vector to, bool partition);
+
+// What a throat with a facet of AREA (as in struct facet, not 0) conducts by its open
+// section between the grains, as throats of the pore network do
+// (network/open_section.h), with lengths in the unit of the corners. With WALLS_RESIST
+// walls are part of the rim, else planes of symmetry. 0 where sectors cover the section.
+struct throat_shape facet_section_shape(const struct corner corner[3],
+                                        struct vector area, struct vector from,
+                                        struct vector to, bool walls_resist);
 
 // Radius of the circle in the plane of the facet that touches all three corners [C 10];
 // 0 when there is none, for grains overlap.

@@ -63,8 +63,9 @@ static const struct parameter table[] = {
      .text = "walls resist as grains do; or are planes of symmetry [C 3.1]; or as in "
              "Yade, which also narrows the throats at symmetric walls"},
     {"conductance", PARAMETER_CHOICE, "1", "\"hydraulic\"", AT(conductance),
-     .choices = "hydraulic|effective",
-     .text = "of a throat: by hydraulic radius [C 8] or effective radius [C 10]"},
+     .choices = "hydraulic|effective|section",
+     .text = "of a throat: by hydraulic radius [C 8], effective radius [C 10], or its "
+             "open section, as in tessellate: the best for random packings"},
     {"conductance_factor", PARAMETER_NUMBER, "1", "0.5", AT(factor),
      BETWEEN(1e-100, 1e100), .text = "alpha of [C 8]"},
     {"pieces", PARAMETER_CHOICE, "1", "\"signed\"", AT(facet_pieces),
@@ -283,6 +284,8 @@ static void write(const struct computation *computation,
                   const struct flow_parameters *parameters,
                   const struct invocation *invocation, const struct artifact *input)
 {
+    static const char *const rule[] = {"hydraulic radius", "effective radius",
+                                       "open section"};
     static const char *const sides[] = {
         "no slip", "planes of symmetry",
         "planes of symmetry, throats narrower, as Yade"};
@@ -306,13 +309,12 @@ static void write(const struct computation *computation,
     char model[700];
     snprintf(
         model, sizeof model,
-        "Stokes flow on the regular triangulation [C], throats by %s radius\n"
+        "Stokes flow on the regular triangulation [C], throats by %s\n"
         "walls: exact planes, %s\n"
         "pressures by %s, %d unknown, imbalance below %g of the flux\n"
         "%d grains hidden in others, %d flat cells, %d throats closed, %d pockets\n"
         "left out: inertia, viscous stress in the facets [C 17]%s\n",
-        parameters->conductance == CONDUCTANCE_HYDRAULIC ? "hydraulic" : "effective",
-        sides[parameters->sides],
+        rule[parameters->conductance], sides[parameters->sides],
         flow.pressures->direct ? "Cholesky's factor"
                                : "conjugate gradients with a sampled factor",
         flow.pressures->n_unknown, parameters->tolerance, flow.cells->n_hidden,

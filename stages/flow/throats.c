@@ -4,8 +4,10 @@
 //     hydraulic:  g = factor A R_h^2,            R_h = V / S            [C 8, 9]
 //     effective:  g = 2 pi R_eff^4,              R_eff = (sqrt(A / pi) + inscribed) / 4
 // and conductance = g / length for a viscosity of 1 [C 20]. R_eff is half of the mean
-// of the two radii, the circle of equal area and the inscribed one [C 10]. A throat is
-// closed where grains cover its facet, or where its volume or surface is not positive.
+// of the two radii, the circle of equal area and the inscribed one [C 10]. With
+// sections, conductance is the series of the slices of the throat instead (facet.h). A
+// throat is closed where grains cover its facet, or where its volume or surface is not
+// positive.
 #include "throats.h"
 
 #include "basics/memory.h"
@@ -55,19 +57,35 @@ static double hydraulic_radius(const struct throat *throat, enum sides sides)
     return radius;
 }
 
-// g_ij [C 8, 10].
+// K_ij by the open section; by the circle that fits between the grains where their
+// sectors cover the section, since one reaches beyond the facet.
+static double section_conductance(const struct throat *throat,
+                                  const struct corner corner[3], struct vector from,
+                                  struct vector to, bool walls_resist)
+{
+    const struct throat_shape shape =
+        facet_section_shape(corner, throat->area, from, to, walls_resist);
+    if (shape.flow > 0) return shape.flow;
+    return M_PI / 8 * pow(inscribed_radius(corner), 4) / throat->length;
+}
+
+// K_ij [C 8, 10, 20].
 static double conductance_of(const struct throat *throat, const struct corner corner[3],
+                             struct vector from, struct vector to,
                              const struct throat_rule *rule)
 {
     const double area = fluid_area(throat);
     if (!(area > 0)) return 0;
+    if (rule->conductance == CONDUCTANCE_SECTION)
+        return section_conductance(throat, corner, from, to,
+                                   rule->sides == SIDES_NO_SLIP);
     if (rule->conductance == CONDUCTANCE_EFFECTIVE) {
         const double inscribed = inscribed_radius(corner);
         const double effective = (sqrt(area / M_PI) + inscribed) / 4;
-        return inscribed > 0 ? 2 * M_PI * pow(effective, 4) : 0;
+        return inscribed > 0 ? 2 * M_PI * pow(effective, 4) / throat->length : 0;
     }
     const double radius = hydraulic_radius(throat, rule->sides);
-    return radius > 0 ? rule->factor * area * radius * radius : 0;
+    return radius > 0 ? rule->factor * area * radius * radius / throat->length : 0;
 }
 
 // Scales the sectors of overlapping grains to the area of the facet; false if they
@@ -114,7 +132,8 @@ static void measure_throat(const struct grains *grains, const struct cells *cell
     if (is_inside(cells, throat))
         throat->length = 0;
     else if (open)
-        throat->conductance = conductance_of(throat, corner, rule) / throat->length;
+        throat->conductance =
+            conductance_of(throat, corner, cell->centre, to, rule);
 }
 
 // Whether facet K of cell C is listed from there, and not from the other side.

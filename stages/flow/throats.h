@@ -19,7 +19,7 @@ enum facet_pieces {
     PIECES_UNSIGNED // each grain's share is counted twice, as Yade does
 };
 
-enum conductance { CONDUCTANCE_HYDRAULIC, CONDUCTANCE_EFFECTIVE };
+enum conductance { CONDUCTANCE_HYDRAULIC, CONDUCTANCE_EFFECTIVE, CONDUCTANCE_SECTION };
 
 // How the resistance of throats is computed [C 2.2.2].
 struct throat_rule {

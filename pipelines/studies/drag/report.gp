@@ -23,9 +23,9 @@ set title "Throats of 200 spheres [C Fig. 11]"
 set xlabel "hydraulic radius / l"; set ylabel "effective radius / l"; unset key
 plot [0:0.03] [0:0.03] file("radii.tsv") with dots linecolor rgb blue, x with lines linecolor rgb grey
 
-set title "Lattices: drag over 6πμaU"
-set xlabel "solid share"; set ylabel ""; set logscale y; set key bottom right; set format y "10^{%T}"
-plot [0:0.75] file("sc.tsv") with lines linewidth 2 linecolor rgb blue title "sc", \
-    file("bcc.tsv") with lines linewidth 2 linecolor rgb pale title "bcc", \
-    file("fcc.tsv") with lines linewidth 2 linecolor rgb grey title "fcc", \
-    file("stokes.tsv") with points pointtype 7 pointsize 0.6 linecolor rgb red title "Stokes (Zick, Homsy)"
+set title "Random packings: permeability over the published"
+set xlabel "porosity"; set ylabel ""; set logscale y; set key top left; set format y "%g"; set ytics add (0.8, 1, 1.5, 2, 3, 5)
+plot [0.3:0.95] [0.7:6] file("random.tsv") using 1:($2 / $5) with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb blue title "hydraulic radius", \
+    '' using 1:($3 / $5) with linespoints pointtype 7 pointsize 0.6 linewidth 2 linecolor rgb sky title "open section", \
+    '' using 1:($4 / $5) with lines dashtype (6, 4) linewidth 2 linecolor rgb grey title "Kozeny, Carman", \
+    1 with lines linecolor rgb grey notitle
