@@ -57,7 +57,8 @@ struct facet measure_facet(const struct corner corner[3], struct vector from,
 // What a throat with a facet of AREA (as in struct facet, not 0) conducts by its open
 // section between the grains, as throats of the pore network do
 // (network/open_section.h), with lengths in the unit of the corners. With WALLS_RESIST
-// walls are part of the rim, else planes of symmetry. 0 where sectors cover the section.
+// walls are part of the rim, else planes of symmetry. 0 where sectors cover the
+// section.
 struct throat_shape facet_section_shape(const struct corner corner[3],
                                         struct vector area, struct vector from,
                                         struct vector to, bool walls_resist);

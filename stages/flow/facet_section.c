@@ -4,8 +4,8 @@
 //     height = (its centre - first centre) . n,
 //     reach  = its distance from the line through the first centre along n,
 // and has the angle of the facet at its corner. At a wall the polygon ends: it is a
-// trapezium or a rectangle. What two grains, or a grain and a wall, cover twice is added
-// back:
+// trapezium or a rectangle. What two grains, or a grain and a wall, cover twice is
+// added back:
 //     d = distance of the centres,   chord = (d^2 + r_i^2 - r_j^2) / (2 d)  from i.
 #include "facet.h"
 
@@ -18,12 +18,12 @@ static void add_grain(const struct corner corner[3], int k, struct vector from,
     const struct vector u = towards(at, &corner[(k + 1) % 3]);
     const struct vector v = towards(at, &corner[(k + 2) % 3]);
     const double across[2] = {dot(away, axis[0]), dot(away, axis[1])};
-    section->grain[section->n_grain++] = (struct section_grain){
-        .angle = atan2(norm(cross(u, v)), dot(u, v)),
-        .radius = corner[k].radius,
-        .height = dot(away, axis[2]),
-        .reach = hypot(across[0], across[1]),
-        .across = {across[0], across[1]}};
+    section->grain[section->n_grain++] =
+        (struct section_grain){.angle = atan2(norm(cross(u, v)), dot(u, v)),
+                               .radius = corner[k].radius,
+                               .height = dot(away, axis[2]),
+                               .reach = hypot(across[0], across[1]),
+                               .across = {across[0], across[1]}};
 }
 
 // The side from corner I to corner J: how grains overlap on it, and how long the rim in
@@ -39,8 +39,8 @@ static void add_side(const struct corner *i, const struct corner *j, double heig
     if (!(r + s > apart)) return;
     const double chord =
         is_wall(other) ? apart : (apart + (r - s) * ((r + s) / apart)) / 2;
-    section->overlap[section->n_overlap++] = (struct section_overlap){
-        {chord, apart - chord}, {r, s}, height};
+    section->overlap[section->n_overlap++] =
+        (struct section_overlap){{chord, apart - chord}, {r, s}, height};
 }
 
 // The length of WALL in the facet that no grain covers; I and J are its other corners.

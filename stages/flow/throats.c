@@ -132,8 +132,7 @@ static void measure_throat(const struct grains *grains, const struct cells *cell
     if (is_inside(cells, throat))
         throat->length = 0;
     else if (open)
-        throat->conductance =
-            conductance_of(throat, corner, cell->centre, to, rule);
+        throat->conductance = conductance_of(throat, corner, cell->centre, to, rule);
 }
 
 // Whether facet K of cell C is listed from there, and not from the other side.

@@ -87,7 +87,9 @@ enum status entry_init(const struct network *network, enum invasion_rule rule,
         measure_nodes(network, entry->entry_priority, height);
     const double tension =
         2 * conditions->surface_tension * cos(conditions->contact_angle * (M_PI / 180));
-    const double weight = conditions->liquid_density * conditions->gravity;
+    // The density of a liquid without weight need not be known.
+    const double weight =
+        conditions->gravity > 0 ? conditions->liquid_density * conditions->gravity : 0;
     for (int i = 0; i < entry->n; i++) {
         entry->pressure[i] = tension / entry->entry_priority[i] - weight * height[i];
         if (weight != 0) entry->entry_priority[i] = -entry->pressure[i];

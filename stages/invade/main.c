@@ -27,7 +27,7 @@ struct invade_parameters {
     struct invasion_conditions invasion;
     struct entry_conditions entry;
     struct drawn_radii radii;
-    int rule, until;
+    int rule, liquid_in, until;
     bool transport;
     unsigned imposed_empty;
     int shut; // throats without clearance
@@ -42,6 +42,11 @@ static const struct parameter table[] = {
     {"rule", PARAMETER_CHOICE, "1", "\"throats\"", AT(rule), .choices = "throats|nodes",
      .text = "what gas must enter: throats by their radii (drainage), or nodes, as "
              "wide as their widest throat"},
+    {"liquid_in", PARAMETER_CHOICE, "1", "\"throats\"", AT(liquid_in),
+     .choices = "throats|pores",
+     .text = "what holds the liquid: throats, each until gas enters it; or pores, the "
+             "halves of the throats at a node, until gas comes to the node (as in beds "
+             "of grains, with tessellate.throat_volume=void)"},
     {"trapping", PARAMETER_BOOLEAN, "1", "true", AT(invasion.trapping),
      .text = "liquid leaves only through the outlet; liquid that gas has cut off from "
              "it stays"},
@@ -184,24 +189,27 @@ static const char *describe(const struct invade_parameters *parameters, char *te
     char gravity[60], fluid[300], radii[RADII_TEXT];
     snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
              parameters->entry.gravity);
-    snprintf(text, size,
-             "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
-             "touches that takes the least pressure, of equals the shorter, then the "
-             "higher\n"
-             "%s\n%s"
-             "%s, contact angle %.6g degrees\n"
-             "%s"
-             "throats without clearance, shut to gas and liquid: %d\n"
-             "left out: viscosity, evaporation, compressibility, films, snap-off%s",
-             parameters->rule == INVADE_THROATS ? "throat" : "node",
-             parameters->invasion.trapping
-                 ? "trapping: liquid leaves only through the outlet (Masson 2016)"
-                 : "no trapping: liquid leaves from anywhere",
-             parameters->entry.gravity > 0 ? gravity : "",
-             conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
-             parameters->given.contact_angle,
-             describe_cut_radii(&parameters->radii, radii), parameters->shut,
-             parameters->entry.gravity > 0 ? "" : ", gravity");
+    snprintf(
+        text, size,
+        "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
+        "touches that takes the least pressure, of equals the shorter, then the "
+        "higher\n"
+        "liquid is held by %s\n"
+        "%s\n%s"
+        "%s, contact angle %.6g degrees\n"
+        "%s"
+        "throats without clearance, shut to gas and liquid: %d\n"
+        "left out: viscosity, evaporation, compressibility, films, snap-off%s",
+        parameters->rule == INVADE_THROATS ? "throat" : "node",
+        parameters->liquid_in == HELD_BY_PORES ? "pores, halves of throats at nodes"
+                                               : "throats",
+        parameters->invasion.trapping
+            ? "trapping: liquid leaves only through the outlet (Masson 2016)"
+            : "no trapping: liquid leaves from anywhere",
+        parameters->entry.gravity > 0 ? gravity : "",
+        conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
+        parameters->given.contact_angle, describe_cut_radii(&parameters->radii, radii),
+        parameters->shut, parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
 }
 
@@ -261,7 +269,8 @@ int main(int argc, char **argv)
     if (!status) status = invade(&network, conditions, &invasion, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     struct outcome outcome =
-        outcome_init(&network, conditions, &invasion, entry.pressure);
+        outcome_init(&network, conditions, &invasion, entry.pressure,
+                     (enum held_by)parameters.liquid_in);
     struct transport transport = {0};
     if (parameters.transport)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);

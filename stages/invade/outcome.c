@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the order of invasion to results. An event empties its throat, or with node
-// invasion all throats at the node that are still liquid. Saturation is a difference of
-// compensated sums, and exactly 0 once nothing is left. The capillary pressure curve is
-// the running maximum of the entry pressures. Liquid that stays is clustered by a
+// invasion all throats at the node that are still liquid; or, where pores hold the
+// liquid, the halves of all throats at the node it comes to. Saturation is a difference
+// of compensated sums, and exactly 0 once nothing is left. The capillary pressure curve
+// is the running maximum of the entry pressures. Liquid that stays is clustered by a
 // disjoint-set forest over nodes without gas; a cluster without a node at the outlet is
 // trapped.
 //
@@ -53,6 +54,18 @@ static void number_events(const struct network *network,
 
 // --- saturation and pressure -------------------------------------------------------
 
+// When the parts of THROAT lose their liquid: all of it, or its halves at both nodes.
+// Returns how many parts there are.
+static int events_of_parts(const struct network *network, const struct outcome *outcome,
+                           int throat, int32_t event[2])
+{
+    const int32_t *ends = network->throat_nodes[throat];
+    for (int end = 0; end < 2; end++)
+        event[end] = outcome->held_by == HELD_BY_PORES ? outcome->node_event[ends[end]]
+                                                       : outcome->throat_event[throat];
+    return outcome->held_by == HELD_BY_PORES ? 2 : 1;
+}
+
 static void find_saturations(const struct network *network, struct outcome *outcome)
 {
     double *lost = NEW_ARRAY(double, outcome->n);
@@ -60,11 +73,17 @@ static void find_saturations(const struct network *network, struct outcome *outc
     struct compensated all = {0}, gone = {0};
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        const double volume = throat_volume(network, t);
-        compensated_add(&all, volume);
-        const int event = outcome->throat_event[t];
-        last = event == LIQUID ? outcome->n : last > event - 1 ? last : event - 1;
-        if (event > 0) lost[event - 1] += volume;
+        int32_t event[2];
+        const int parts = events_of_parts(network, outcome, t, event);
+        const double volume = throat_volume(network, t) / parts;
+        for (int k = 0; k < parts; k++) {
+            compensated_add(&all, volume);
+            last = event[k] == LIQUID    ? outcome->n
+                   : last > event[k] - 1 ? last
+                                         : event[k] - 1;
+            if (event[k] > 0) lost[event[k] - 1] += volume;
+            if (event[k] == GAS_FROM_THE_START) compensated_add(&gone, volume);
+        }
     }
     const double total = compensated_value(all);
     for (int k = 0; k < outcome->n; k++) {
@@ -103,7 +122,11 @@ static void add_to_cluster(const struct network *network, struct outcome *outcom
 {
     outcome->throat_cluster[throat] = cluster;
     outcome->cluster_throats[cluster]++;
-    outcome->cluster_volume[cluster] += throat_volume(network, throat);
+    int32_t event[2];
+    const int parts = events_of_parts(network, outcome, throat, event);
+    for (int k = 0; k < parts; k++)
+        if (event[k] == LIQUID)
+            outcome->cluster_volume[cluster] += throat_volume(network, throat) / parts;
     outcome->cluster_trapped[cluster] = 1;
 }
 
@@ -145,10 +168,12 @@ static void find_clusters(const struct network *network, unsigned outlet,
 
 struct outcome outcome_init(const struct network *network,
                             const struct invasion_conditions *conditions,
-                            const struct invasion *invasion, const double *pressure)
+                            const struct invasion *invasion, const double *pressure,
+                            enum held_by held_by)
 {
     const int n = invasion->n, n_throat = network->n_throat;
-    struct outcome outcome = {.throat_event = NEW_ARRAY(int32_t, n_throat),
+    struct outcome outcome = {.held_by = held_by,
+                              .throat_event = NEW_ARRAY(int32_t, n_throat),
                               .node_event = NEW_ARRAY(int32_t, network->n_node),
                               .n = n,
                               .pressure = NEW_ARRAY(double, n),

@@ -5,9 +5,16 @@
 
 #include "network/invasion.h"
 
+// What holds the liquid, and when gas takes its place.
+enum held_by {
+    HELD_BY_THROATS, // a throat, when gas enters it
+    HELD_BY_PORES    // half of each throat at a node, when gas comes to the node
+};
+
 // Events count from 1; 0: gas from the start; -1: liquid in the end. Where gas enters
 // nodes, a throat empties with the first of its two.
 struct outcome {
+    enum held_by held_by;
     int32_t *throat_event; // (n_throat)
     int32_t *node_event;   // (n_node)
 
@@ -31,7 +38,8 @@ struct outcome {
 // outcome with outcome_free.
 struct outcome outcome_init(const struct network *network,
                             const struct invasion_conditions *conditions,
-                            const struct invasion *invasion, const double *pressure);
+                            const struct invasion *invasion, const double *pressure,
+                            enum held_by held_by);
 
 void outcome_free(struct outcome *outcome);
 

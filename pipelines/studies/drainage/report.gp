@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Suction over saturation as a packing drains. Variable: tables, the folder of report.
+set terminal @svg "Helvetica,15" size 760,440
+@axes
+file(angle) = sprintf("%s/angle-%d.tsv", tables, angle)
+array angles[3] = [0, 20, 40]
+array colours[3] = [blue, sky, teal]
+
+set xlabel "saturation"; set ylabel "suction, γ / R"; set xrange [1:0]; set yrange [0:30]; set key top left
+plot for [k=1:3] file(angles[k]) using 2:1 with lines linewidth 2 linecolor rgb colours[k] title sprintf("contact angle %d°", angles[k]), \
+    file(0) using 3:1 with lines dashtype (3, 4) linecolor rgb blue title "0°, without rings", \
+    file(0) using 4:1 with lines linewidth 1 linecolor rgb grey title "0°, throats hold all liquid"
