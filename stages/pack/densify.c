@@ -177,7 +177,7 @@ enum { CYCLES = 20 }; // of the pace, between two strains
 static enum status run_a_while(struct densification *d, struct reason *reason)
 {
     enum { ADAPT_EVERY = 25 };
-    const bool adapted = is_adapted(d->making);
+    const bool adapted = dem_step_is_adapted(d->dem);
     const double cycles = CYCLES * (adapted ? d->pace / dem_time_step(d->dem) : 1);
     const enum status status = dem_run(d->dem, (int64_t)fmax(1, rint(cycles)), reason);
     d->strains++;
@@ -300,7 +300,7 @@ static enum status rest(struct densification *d, struct reason *reason)
     while (dem_cycle(d->dem) < how->most_cycles) {
         const enum status status = dem_run(d->dem, CYCLES_OF_REST, reason);
         if (status != STATUS_OK) return status;
-        if (is_adapted(d->making)) adapt_step(d->dem, false, 0);
+        if (dem_step_is_adapted(d->dem)) adapt_step(d->dem, false, 0);
         const double ratio = dem_unbalanced_ratio(d->dem);
         if (ratio < how->tolerance && largest_speed(d->making, d->dem) < still)
             return STATUS_OK;
@@ -382,7 +382,7 @@ static double pace_of(const struct densification *d)
 {
     const struct making *making = d->making;
     const struct packing *packing = making->packing;
-    if (!is_adapted(making)) return dem_time_step(d->dem);
+    if (!dem_step_is_adapted(d->dem)) return dem_time_step(d->dem);
     double mass = 0;
     for (int i = 0; i < packing->n_particle; i++) {
         const double r = packing->radius[i];

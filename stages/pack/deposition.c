@@ -104,7 +104,8 @@ static double largest_own_speed(const struct making *making, const struct dem *d
     struct vector *velocity = NEW_ARRAY(struct vector, n);
     dem_velocities(dem, velocity);
     double mean = 0, largest = 0;
-    for (int i = 0; i < n && is_adapted(making); i++)
+    const bool scaled = dem_step_is_adapted(dem);
+    for (int i = 0; i < n && scaled; i++)
         mean += pow(packing->radius[i], 3) / n;
     for (int i = 0; i < n; i++) {
         const double heavier = fmax(1, mean / pow(packing->radius[i], 3));
@@ -148,7 +149,7 @@ static double mean_radius(const struct packing *packing)
 static void follow(const struct making *making, struct dem *dem, double height,
                    struct settling *settling)
 {
-    if (!is_adapted(making)) return;
+    if (!dem_step_is_adapted(dem)) return;
     const double slow = fall_speed(making, mean_radius(making->packing));
     const double fall_time = fall_speed(making, height) / making->how->gravity;
     const bool lands = dem_time(dem) > 2 * fall_time &&
@@ -175,7 +176,7 @@ static void show_progress(const struct making *making, const struct dem *dem,
 static enum status settle(const struct making *making, double height, struct dem *dem,
                           struct reason *reason)
 {
-    const bool adapted = is_adapted(making);
+    const bool adapted = dem_step_is_adapted(dem);
     const int check_every = adapted ? 200 : 500;
     const double typical_speed = fall_speed(making, mean_radius(making->packing));
     struct settling settling = {.landed = !adapted};

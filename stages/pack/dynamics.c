@@ -180,11 +180,6 @@ double step_safety(const struct making *making)
     return are_wide(making->packing) ? fixed_safety(making) : making->how->safety;
 }
 
-bool is_adapted(const struct making *making)
-{
-    return isnan(step_safety(making));
-}
-
 void adapt_step(struct dem *dem, bool fall, double speed)
 {
     dem_adapt_time_step(dem, ADAPTED_SHARE, !fall, speed);

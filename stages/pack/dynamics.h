@@ -115,9 +115,10 @@ double solid_fraction(const struct domain *domain, const struct packing *packing
 double drawn_fraction(const struct making *making, int count);
 
 // An engine on the packing, between WALLS; STIFFNESS in N/m. SAFETY: of the time step
-// [K 4.47]; NAN: the step is adapted, and under gravity no grain has less inertia than
-// the mean one, nor, until land_grains, less weight. The caller frees *DEM with
-// dem_free, also after a failure.
+// [K 4.47]; NAN: the step is adapted (dem_step_is_adapted), and under gravity no grain
+// has less inertia than the mean one, nor, until land_grains, less weight; the caller
+// calls adapt_step every few hundred cycles. It frees *DEM with dem_free, also after a
+// failure.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
@@ -127,10 +128,6 @@ enum status start_dynamics(const struct making *making, double stiffness, double
 // not.
 double fixed_safety(const struct making *making);
 double step_safety(const struct making *making);
-
-// Whether the step is adapted; if so the caller calls adapt_step every few hundred
-// cycles.
-bool is_adapted(const struct making *making);
 
 // Adapts the step of DEM to the contacts of now and to grains of SPEED (m/s) or, if
 // some are, faster; while grains FALL, to contacts that may form.

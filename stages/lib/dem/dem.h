@@ -289,6 +289,9 @@ void dem_set_least_mass(struct dem *dem, double share, bool falls);
 // must do so again as contacts form. O(pairs).
 void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed);
 
+// Whether it was set so.
+bool dem_step_is_adapted(const struct dem *dem);
+
 // Stretches the box with all centres along x, y and z about its lower corner, and
 // scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
 // are. Its work counts as gained, but for contacts with walls, which stay. Returns

@@ -60,3 +60,8 @@ void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed)
     dem->time_step_limit = limit;
     dem->time_step = share * limit;
 }
+
+bool dem_step_is_adapted(const struct dem *dem)
+{
+    return dem->step_is_adapted;
+}
