@@ -26,10 +26,9 @@ static void add_grain(const struct corner corner[3], int k, struct vector from,
                                .across = {across[0], across[1]}};
 }
 
-// The side from corner I to corner J: how grains overlap on it, and how long the rim in
-// a wall is that lies across it.
-static void add_side(const struct corner *i, const struct corner *j, double height,
-                     struct open_section *section)
+// How two grains, or a grain and a wall, overlap on the side from corner I to corner J.
+static void add_overlap(const struct corner *i, const struct corner *j, double height,
+                        struct open_section *section)
 {
     if (is_wall(i) && is_wall(j)) return;
     const struct corner *grain = is_wall(i) ? j : i, *other = is_wall(i) ? i : j;
@@ -79,7 +78,7 @@ struct throat_shape facet_section_shape(const struct corner corner[3],
     const double height = dot(subtract(corner[first].at, from), normal);
     for (int k = 0; k < 3; k++) {
         const struct corner *next = &corner[(k + 1) % 3], *last = &corner[(k + 2) % 3];
-        add_side(&corner[k], next, height, &section);
+        add_overlap(&corner[k], next, height, &section);
         if (!is_wall(&corner[k]))
             add_grain(corner, k, from, axis, &section);
         else if (walls_resist)

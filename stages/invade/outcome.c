@@ -78,9 +78,8 @@ static void find_saturations(const struct network *network, struct outcome *outc
         const double volume = throat_volume(network, t) / parts;
         for (int k = 0; k < parts; k++) {
             compensated_add(&all, volume);
-            last = event[k] == LIQUID    ? outcome->n
-                   : last > event[k] - 1 ? last
-                                         : event[k] - 1;
+            const int emptied = event[k] == LIQUID ? outcome->n : event[k] - 1;
+            if (emptied > last) last = emptied;
             if (event[k] > 0) lost[event[k] - 1] += volume;
             if (event[k] == GAS_FROM_THE_START) compensated_add(&gone, volume);
         }

@@ -103,10 +103,10 @@ static json_t *tensor(const double of[3][3], double factor)
     return rows;
 }
 
-static void append_row(json_t *report, double suction, const struct retained *is)
+// BOX and SOLID: volumes of the box and of the grains in it, m3.
+static void append_row(json_t *report, double box, double solid, double suction,
+                       const struct retained *is)
 {
-    const double box = json_number_value(json_object_get(report, "box_volume"));
-    const double solid = json_number_value(json_object_get(report, "solid_volume"));
     const double trace = is->pull[0][0] + is->pull[1][1] + is->pull[2][2];
     append(report, "suction", json_real(suction));
     append(report, "rings", json_integer(is->rings));
@@ -122,22 +122,23 @@ static json_t *report_of(const struct packing *packing, const struct liquid *liq
                          const struct rings_parameters *given)
 {
     const double radius = mean_radius(packing), unit = liquid->tension / radius;
+    const double box = box_volume(packing), solid = volume_of_grains(packing);
     int count;
     double *suction = suctions_of(given, unit, &count);
     struct ring_sites sites = sites_of(packing, suction[0], liquid->tension);
-    json_t *report = json_pack(
-        "{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}", "schema",
-        "craquelure/rings/1", "grains", packing->n_particle, "mean_radius", radius,
-        "box_volume", box_volume(packing), "solid_volume", volume_of_grains(packing),
-        "contacts", sites.contacts, "suction", "rings", "meeting", "volume", "content",
-        "saturation", "stress", "stress_tensor");
+    json_t *report =
+        json_pack("{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}",
+                  "schema", "craquelure/rings/1", "grains", packing->n_particle,
+                  "mean_radius", radius, "box_volume", box, "solid_volume", solid,
+                  "contacts", sites.contacts, "suction", "rings", "meeting", "volume",
+                  "content", "saturation", "stress", "stress_tensor");
     for (int k = 0; k < count; k++) {
         struct retained retained;
         struct reason reason;
         const enum status status =
             retain(packing, &sites, liquid, suction[k], &retained, &reason);
         if (status) die(status, "%s", reason.text);
-        append_row(report, suction[k], &retained);
+        append_row(report, box, solid, suction[k], &retained);
     }
     sites_free(&sites);
     free(suction);

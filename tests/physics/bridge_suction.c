@@ -35,7 +35,7 @@ static int compare(const struct bridge *given, double gap, double suction)
     if (!(miss < 1e-7 && fabs(by_volume.force / at.force - 1) < 1e-7))
         fail_msg("suction %g, gap %g: off by %g", suction, gap, miss);
     if (!(fabs(at.suction * unit / TENSION / suction - 1) < 1e-9))
-        fail_msg("not the suction that was asked for");
+        fail_msg("the bridge has another suction than the given one");
     return 1;
 }
 

@@ -18,11 +18,10 @@
 
 #include <math.h>
 
-// What is asked, and how it is answered.
+// What is asked.
 struct search {
     const struct bodies *bodies;
     double gap;
-    bool symmetric;
 };
 
 static double smaller_radius(const struct bodies *bodies)
@@ -86,7 +85,7 @@ static struct problem problem_of(const struct search *search, const double *curv
                             .volume = 1,
                             .curvature = curvature,
                             .gap = search->gap,
-                            .symmetric = search->symmetric};
+                            .symmetric = bodies_are_equal(search->bodies)};
 }
 
 static bool is_held(const struct search *search, double curvature,
@@ -192,13 +191,7 @@ static bool is_beyond_all(double curvature, double gap, double most)
 enum status find_at_curvature(const struct bodies *bodies, double curvature, double gap,
                               struct equilibrium *found, double *volume)
 {
-    const struct search search = {
-        .bodies = bodies,
-        .gap = gap,
-        .symmetric = !(bodies->curvature[0] < bodies->curvature[1] ||
-                       bodies->curvature[0] > bodies->curvature[1] ||
-                       bodies->contact_angle[0] < bodies->contact_angle[1] ||
-                       bodies->contact_angle[0] > bodies->contact_angle[1])};
+    const struct search search = {bodies, gap};
     struct unknowns unknowns;
     enum status status = STATUS_OK;
     *found = (struct equilibrium){.gap = gap};

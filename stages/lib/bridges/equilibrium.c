@@ -103,11 +103,6 @@ static struct arc torus(const struct bodies *bodies, double volume, double gap)
     return arc;
 }
 
-static bool equal(const double of[2])
-{
-    return !(of[0] < of[1] || of[0] > of[1]);
-}
-
 // The bridge to find; with to_turning also past the break of symmetry.
 struct question {
     const struct bodies *bodies;
@@ -124,8 +119,7 @@ static struct problem problem_at(const struct question *asked, double volume,
                             .volume = volume,
                             .shared = bodies_overlap(bodies, gap).volume,
                             .gap = gap,
-                            .symmetric = equal(bodies->curvature) &&
-                                         equal(bodies->contact_angle)};
+                            .symmetric = bodies_are_equal(bodies)};
 }
 
 static bool settle(const struct problem *problem, struct state *state)

@@ -31,6 +31,16 @@ static double sinc(double x)
     return fabs(x) < 1e-4 ? 1 - x * x / 6 : sin(x) / x;
 }
 
+static bool equal(const double of[2])
+{
+    return !(of[0] < of[1] || of[0] > of[1]);
+}
+
+bool bodies_are_equal(const struct bodies *bodies)
+{
+    return equal(bodies->curvature) && equal(bodies->contact_angle);
+}
+
 struct contact_line contact_line(const struct bodies *bodies, int which, double reach)
 {
     const double curvature = bodies->curvature[which], angle = curvature * reach;

@@ -22,6 +22,9 @@ struct bodies {
     double contact_angle[2]; // rad
 };
 
+// Whether both are alike: a bridge between them has a symmetric shape.
+bool bodies_are_equal(const struct bodies *bodies);
+
 // An arc, by four numbers that stay regular for every shape.
 enum { ARC_FIRST, ARC_SECOND, ARC_LENGTH, ARC_TURN, ARC_NUMBERS };
 struct arc {
