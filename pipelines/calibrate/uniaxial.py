@@ -11,22 +11,19 @@ holds it.
 import json
 import os
 import subprocess
-from math import sqrt
 
 import h5py
 import numpy as np
 
-from common import artifact, refuse
+from common import BIN, artifact, refuse
+from samples import described
 
-BIN = os.environ.get("BIN", "build/bin")
 LAYER = 3  # thickness of the end layers, mean radii
 UNBREAKABLE = 1e30
 # Equilibria without friction: between open contacts it hardly acts (docs/calibration.md).
 FAST = ("engine=quasi-static", "friction=0")
 SLOW = ("engine=explicit", "tolerance=1e-6", "most_cycles=1000000", "ramp=20000")
 
-# Student's t of 95 % for two and three values.
-STUDENT = {2: 12.706, 3: 4.303}
 KEYS = ("normal_stiffness", "shear_stiffness", "bond.normal_stiffness", "bond.shear_stiffness",
         "bond.normal_strength", "bond.shear_strength")
 
@@ -196,11 +193,11 @@ def axes_asked():
 
 
 def row(name, unit, values, wanted):
-    values = np.asarray(values)
-    interval = f" ± {STUDENT[len(values)] * values.std(ddof=1) / sqrt(len(values)):.2g}" if len(values) > 1 else ""
+    found = described([float(v) for v in values])
+    interval = "" if found["high"] is None else f" ± {found['high'] - found['mean']:.2g}"
     each = " | ".join(f"{v:.4g}" for v in values)
     wished = "" if wanted is None else f"{wanted:.4g}"
-    print(f"| {name}, {unit} | {wished} | {values.mean():.4g}{interval} | {each} |")
+    print(f"| {name}, {unit} | {wished} | {found['mean']:.4g}{interval} | {each} |")
 
 
 def show(axes, found, wanted):
