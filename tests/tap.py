@@ -42,6 +42,11 @@ def run(stage, *arguments, input=None):
                           stdout=subprocess.PIPE, check=True).stdout
 
 
+def sets(*settings):
+    """The words that --set them."""
+    return [word for setting in settings for word in ("--set", setting)]
+
+
 def scratch():
     """A folder that goes when the test ends."""
     return tempfile.TemporaryDirectory(prefix="craquelure-test-")

@@ -39,8 +39,7 @@ ok(all(low <= mean <= high and high - low < 0.2 for row in table for mean, low, 
 least = [min(float(run[key]) for run in runs) for key in "abc"]
 ok(all(-pi <= x < -pi + 0.01 for x in least), "the samples fill their ranges", least)
 for words, status, line in [((at("design.tsv"), at("none.tsv"), "cracks", folder.name), 66, "no such file"),
-                            ((at("design.tsv"), at("runs.tsv"), "bonds", folder.name), 65, "must have the 10000 runs"),
-                            ]:
+                            ((at("design.tsv"), at("runs.tsv"), "bonds", folder.name), 65, "must have the 10000 runs")]:
     said = tool("indices", *words)
     ok(said.returncode == status and line in said.stderr and "Traceback" not in said.stderr, f"{line}: refused", said.stderr)
 said = tool("design", "ten", at("other.tsv"), "a=1,2")

@@ -10,14 +10,10 @@ import sys
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 BENCH = os.path.join(os.path.dirname(BIN), "tests/bench/void")
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1"}
-
-
-def sets(*settings):
-    return [word for s in settings for word in ("--set", s)]
 
 
 # Grains in a cell of edge 1, their radius at contact, and the coefficient of the first term of

@@ -9,18 +9,16 @@ import h5py
 import numpy as np
 
 sys.path[:0] = ["tests", "tests/bench/void"]
+import published
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 LOGNORMAL = ["sizes.distribution=lognormal", "sizes.spread=0.3", "sizes.smallest=0.4e-6", "sizes.largest=2.2e-6"]
 JAMMED = ["method=radius_expansion", "count=300", "radius=1e-6", "dynamics.friction=0", "bonds=none", "seed=5"]
+PERIODIC = "periodic=[true,true,true]"
 folder = scratch()
 at = lambda name: os.path.join(folder.name, name)
-
-
-def sets(*settings):
-    return [word for s in settings for word in ("--set", s)]
 
 
 def pack(name, *settings):
@@ -45,24 +43,20 @@ def of_network(packing, axes=range(3)):
     return np.array([balance.flow(axis)[1] for axis in axes]) * network.unit**2
 
 
+def imported(name, grains, upper, periodic):
+    text = "\n".join(" ".join(f"{x:.17g}" for x in grain) for grain in grains)
+    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={upper}", "bonds=none", periodic), "-o", at(name),
+        input=text.encode())
+    return at(name)
+
+
 def grown(packing, factor, name):
     """The packing with its radii times FACTOR."""
     with h5py.File(packing) as file:
         grains = np.column_stack([file["particles/position"][:], factor * file["particles/radius"][:]])
-        upper = file["domain/upper"][:].tolist()
-    text = "\n".join(" ".join(f"{x:.17g}" for x in grain) for grain in grains)
-    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={upper}", "periodic=[true,true,true]", "bonds=none"),
-        "-o", at(name), input=text.encode())
-    return at(name)
+        return imported(name, grains, file["domain/upper"][:].tolist(), PERIODIC)
 
 
-def stokes(porosity, diameter):
-    """van der Hoef, Beetstra & Kuipers (2005)."""
-    solid = 1 - porosity
-    return porosity * diameter**2 / (18 * solid * (10 * solid / porosity**2 + porosity**2 * (1 + 1.5 * np.sqrt(solid))))
-
-
-PERIODIC = "periodic=[true,true,true]"
 jammed = pack("jammed.h5", *JAMMED, PERIODIC)
 for title, packing in {"equal grains": jammed,
                        "unequal grains, loose": pack("loose.h5", *JAMMED, PERIODIC, *LOGNORMAL, "target=porosity", "target_value=0.45"),
@@ -84,13 +78,10 @@ ok(abs(k / wanted - 1) < 1e-3, "in a box with walls: that of the network, within
 ok(abs(inflow.sum()) < 1e-10 * np.abs(inflow).max() and np.abs(forces).max() < 1e-9, "  flows and forces balance", (inflow, forces))
 
 # Eight grains in a box of mirrors are the simple cubic lattice.
-corners = 1e-6 * np.array([[x, y, z] for x in (1, 3) for y in (1, 3) for z in (1, 3)])
-text = "\n".join(f"{x:.17g} {y:.17g} {z:.17g} 0.9e-6" for x, y, z in corners)
+corners = [[x, y, z, 0.9e-6] for x in (1e-6, 3e-6) for y in (1e-6, 3e-6) for z in (1e-6, 3e-6)]
 both = {}
-for name, periodic in (("mirrors", "[false,false,true]"), ("lattice", "[true,true,true]")):
-    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", "upper=[4e-6,4e-6,4e-6]", "bonds=none", f"periodic={periodic}"),
-        "-o", at(name), input=text.encode())
-    with sections(at(name), "sides=symmetric") as file:
+for name, periodic in (("mirrors", "periodic=[false,false,true]"), ("lattice", PERIODIC)):
+    with sections(imported(name, corners, [4e-6] * 3, periodic), "sides=symmetric") as file:
         both[name] = file["summary"].attrs["permeability"]
 ok(abs(both["mirrors"] / both["lattice"] - 1) < 1e-9, "between planes of symmetry a lattice conducts as it does without end", both)
 
@@ -99,6 +90,6 @@ for factor, within in ((1, 0.1), (0.95, 0.15), (0.8, 0.2), (0.7, 0.2)):
     packing = grown(jammed, factor, "shrunk.h5")
     with h5py.File(packing) as file:
         porosity, diameter = file["summary"].attrs["porosity"], 2 * file["particles/radius"][0]
-    ratio = np.trace(tensor(packing)) / 3 / stokes(porosity, diameter)
+    ratio = np.trace(tensor(packing)) / 3 / published.permeability(porosity, diameter)
     ok(abs(ratio - 1) < within, f"radii times {factor}: published permeability within {100 * within:.0f} %", (porosity, ratio))
 done()

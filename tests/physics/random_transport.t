@@ -9,28 +9,16 @@ import h5py
 import numpy as np
 
 sys.path[:0] = ["tests", "tests/bench/void"]
+import published
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 LOGNORMAL = ["sizes.distribution=lognormal", "sizes.spread=0.3", "sizes.smallest=0.4e-6", "sizes.largest=2.2e-6"]
 CASES = {"equal, jammed": [],
          "equal, loose": ["target=porosity", "target_value=0.45"],
          "lognormal, jammed": LOGNORMAL,
          "lognormal, loose": ["target=porosity", "target_value=0.45", *LOGNORMAL]}
-
-
-def sets(*settings):
-    return [word for s in settings for word in ("--set", s)]
-
-
-def stokes(porosity, radius):
-    """The permeability by the fit of van der Hoef, Beetstra & Kuipers (2005) to lattice Boltzmann
-    flow through random packings, for unequal spheres with the Sauter mean diameter."""
-    solid = 1 - porosity
-    drag = 10 * solid / porosity**2 + porosity**2 * (1 + 1.5 * np.sqrt(solid))
-    diameter = 2 * (radius**3).sum() / (radius**2).sum()
-    return porosity * diameter**2 / (18 * solid * drag)
 
 
 for title, how in CASES.items():
@@ -53,7 +41,7 @@ for title, how in CASES.items():
         ok(all(low < d < high for d in diffusivity),
            f"{title}: diffuses more than Bruggeman, less than the bound of Hashin & Shtrikman",
            (low, *diffusivity, high))
-        wanted = stokes(porosity, radius)
+        wanted = published.permeability(porosity, published.sauter_diameter(radius))
         ok(abs(permeability / wanted - 1) < 0.15, "  its permeability is the published one within 15 %",
            (permeability, wanted))
         print(f"# porosity {porosity:.4f}, D {np.mean(diffusivity):.4f} ({low:.4f} to {high:.4f}), "

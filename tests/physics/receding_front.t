@@ -17,7 +17,7 @@ import numpy as np
 sys.path[:0] = ["tests", "tests/bench/void"]
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 COPIES = 5
 DIFFUSIVITY, PRESSURE, VAPOUR, MOLAR_MASS = 2.5685e-5, 1e5, 2339, 18.02e-3
@@ -25,10 +25,6 @@ TEMPERATURE, DENSITY, GAS_CONSTANT = 293.15, 998.2, 8.314462618
 CONDITIONS = [f"diffusivity={DIFFUSIVITY}", f"gas_pressure={PRESSURE}", f"saturation_pressure={VAPOUR}",
               f"molar_mass={MOLAR_MASS}", f"temperature={TEMPERATURE}", f"liquid_density={DENSITY}",
               "surface_tension=0.07274"]
-
-
-def sets(*settings):
-    return [word for s in settings for word in ("--set", s)]
 
 
 def triple(values):

@@ -66,16 +66,17 @@ def meridian(neck, suction, centre, steps=700):
 def ring(gap, suction, angle):
     """Force and volume (in R and tension) of the ring between equal spheres: the widest whose
     contact angle is right."""
-    miss = lambda y: (lambda m: -1 if m is None else m[0] - angle)(meridian(y, suction, 1 + gap / 2, 300))
+    def miss(y, steps=700):
+        arrival = meridian(y, suction, 1 + gap / 2, steps)
+        return -1 if arrival is None else arrival[0] - angle
     wide = 0.8
-    while miss(wide) < 0:
+    while miss(wide, 300) < 0:
         wide *= 0.95
     # the angle grows as the neck shrinks, until it is too narrow for the sphere to be met
     low, high = wide, wide / 0.95
-    exact = lambda y: (lambda m: -1 if m is None else m[0] - angle)(meridian(y, suction, 1 + gap / 2))
     for _ in range(40):
         middle = (low + high) / 2
-        if exact(middle) < 0:
+        if miss(middle) < 0:
             high = middle
         else:
             low = middle

@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 THROATS = ["nodes", "radius", "length", "kind", "volume", "diffusive_conductance",
            "hydraulic_conductance", "hydraulic_radius"]
@@ -45,10 +45,6 @@ def remove(path, to, gone):
             del new["faces"][name]
             new["faces"][name] = np.array(rows, kind)
             new["faces"][name].attrs.update(attributes)
-
-
-def sets(*settings):
-    return [word for s in settings for word in ("--set", s)]
 
 
 def read(path, *names):
