@@ -228,6 +228,17 @@ few = browser.evaluate("(() => { MOVING.throats = 50; const { throats: { all, bo
                        " return [bold, new Set(all).size === all.length, falls(ends.slice(0, bold)) && falls(ends.slice(bold))]; })()")
 ok(0 < few[0] <= 50 and few[1:] == [True, True], "of these the boldest come first, and those that empty last before others", few)
 
+LISTS = """(() => { ALWAYS_ALL.things = 0; page.lateFrames = 9; const made = [];
+    for (const [yaw, moving] of [[0, true], [0.02, true], [0.04, true], [0.02, false]]) {
+      const before = page.seen;
+      page.camera.yaw += yaw; page.moving = moving; page.stale = true; draw(page); made.push(page.seen !== before);
+    }
+    ALWAYS_ALL.things = 20000; page.lateFrames = 0; page.stale = true; draw(page);
+    return made; })()"""
+browser.evaluate("page.moving = false; page.stale = true; draw(page)")
+renewed = browser.evaluate(LISTS)
+ok(renewed == [True, False, True, True], "while a body turns, what can be seen is found anew every three degrees, and at rest always", renewed)
+
 # the moment: liquid and cracks against a replay of the drying
 with h5py.File(at("drying.h5")) as file:
     times, offset = file["history/time"][:], file["changes/offset"][:]

@@ -6,6 +6,11 @@ function newCamera() {
   return { yaw: -0.62, pitch: 0.35, zoom: 1, x: 0, y: 0 };
 }
 
+// Whether one sees nearly the same: three degrees, and a twentieth of the picture.
+function seesAlike(a, b) {
+  return Math.abs(a.yaw - b.yaw) + Math.abs(a.pitch - b.pitch) < 0.052 && Math.abs(a.zoom / b.zoom - 1) + Math.abs(a.x - b.x) + Math.abs(a.y - b.y) < 0.05 / b.zoom;
+}
+
 // Rows: to the right, up, and towards the eye.
 function turnOf({ yaw, pitch }) {
   const c = Math.cos(yaw), s = Math.sin(yaw), cp = Math.cos(pitch), sp = Math.sin(pitch);

@@ -10,10 +10,10 @@ async function inflate(text) {
 function decode(entry, bytes, from) {
   const n = entry.count, value = new Uint32Array(n);
   for (let plane = 0; plane < entry.planes; plane++)
-    for (let k = 0, at = from + plane * n; k < n; k++) value[k] |= bytes[at++] << (8 * plane);
+    for (let k = 0, at = from + plane * n; k < n; k++) value[k] |= bytes[at + k] << (8 * plane);
   if (entry.float) return new Float32Array(value.buffer);
   for (let k = 0, last = 0; entry.delta && k < n; k++)
-    value[k] = last += value[k] & 1 ? -((value[k] + 1) / 2) : value[k] / 2;
+    value[k] = last += (value[k] >>> 1) ^ -(value[k] & 1);
   return value;
 }
 
@@ -38,18 +38,17 @@ function fallingOrder(keys) {
   return order;
 }
 
-// Throats, those that empty last first, with the middle of each and how far it reaches.
-function throatsOf({ at }, columns) {
-  const order = fallingOrder(columns.ends), n = order.length, middle = new Float32Array(4 * n), throat = { n, middle };
-  for (const name in columns) {
-    const from = columns[name], to = throat[name] = new (from.constructor === Array ? Uint32Array : from.constructor)(n);
-    for (let k = 0; k < n; k++) to[k] = from[order[k]];
-  }
-  for (let t = 0; t < n; t++) {
-    const a = 3 * throat.first[t], b = 3 * throat.second[t];
-    for (let axis = 0; axis < 3; axis++) middle[4 * t + axis] = (at[a + axis] + at[b + axis]) / 2;
-    middle[4 * t + 3] = Math.hypot(at[a] - at[b], at[a + 1] - at[b + 1], at[a + 2] - at[b + 2]) / 2 + throat.radius[t];
-  }
+// The values of COLUMN in ORDER.
+function inOrder(column, order) {
+  const n = order.length, to = new (Array.isArray(column) ? Uint32Array : column.constructor)(n);
+  for (let k = 0; k < n; k++) to[k] = column[order[k]];
+  return to;
+}
+
+// Throats, those that empty last first.
+function throatsOf(columns) {
+  const order = fallingOrder(columns.ends), throat = { n: order.length };
+  for (const name in columns) throat[name] = inOrder(columns[name], order);
   return throat;
 }
 
@@ -76,7 +75,7 @@ function bodyOf(meta, arrays) {
   const body = {
     meta, arrays, unit, size: size.map((length) => length / unit), half: size.map((length) => length / unit / 2), middle,
     grain: { at: place("grain"), radius: length("grain.radius"), n: (arrays["grain.radius"] || []).length },
-    node, throat: throatsOf(node, {
+    node, throat: throatsOf({
       first: arrays["throat.first"] || [], second: second(arrays["throat.first"], arrays["throat.second"]), radius: length("throat.radius"),
       leaves: arrays["throat.leaves"] || [], ends: arrays["throat.ends"] || [], id: arrays["throat.id"] || [],
     }),

@@ -63,7 +63,7 @@ function viewOf(page, width, height) {
   }
   const show = Object.fromEntries([...element("shown").querySelectorAll("input")].map((box) => [box.name, box.checked]));
   return { turn: turnOf(camera), frame: [-camera.x, -camera.y, wide, high], clip, key: course ? course.key : 0, show, colours: page.colours,
-    grow: Number(element("size").value) / 100, dense: page.dense, pixel: 2 * wide / width * page.dense, longest: page.longest, plain: page.moving && page.lateFrames > 2 };
+    grow: Number(element("size").value) / 100, dense: page.dense, pixel: 2 * wide / width * page.dense, longest: page.longest, plain: page.moving && (page.lateFrames > 2 || page.first) };
 }
 
 // ---- drawing ------------------------------------------------------------------------
@@ -82,6 +82,7 @@ function updateShown(page, view) {
   page.seen = visibleOf(page.body, view, page.canvas.width, page.canvas.height);
   if (page.scene) putBody(page.scene, page.seen);
   page.stale = false;
+  page.shownFrom = view.plain ? { ...page.camera } : null;
   page.tinted = page.forced = null;
   sayDrawn(page);
 }
@@ -112,7 +113,7 @@ function followMotion(page) {
   page.drawnAt = now;
   if (page.moving && isLarge(page.body) && since > 33 && since < 1000) page.lateFrames++;
   const screen = Math.min(2, window.devicePixelRatio || 1), still = isLarge(page.body) ? screen : Math.max(2, screen);
-  resize(page, !page.moving ? still : page.lateFrames > 4 ? screen / 2 : screen);
+  resize(page, !page.moving ? still : page.lateFrames > 4 || page.first ? screen / 2 : screen);
 }
 
 function draw(page) {
@@ -120,11 +121,20 @@ function draw(page) {
   followMotion(page);
   const view = viewOf(page, page.canvas.width, page.canvas.height);
   if (page.body.moves && page.movedTo !== view.key) moveTo(page, view.key);
-  if (page.stale) updateShown(page, view);
+  if (page.stale && !(view.plain && page.shownFrom && seesAlike(page.camera, page.shownFrom))) updateShown(page, view);
   updateMoment(page, view);
   if (page.scene) drawScene(page.scene, view);
   else page.things = drawFlat(page.canvas, page.body, page.cracks, { ...view, grainTint: page.tints.grain, throatTint: page.tints.throat }, page.seen);
   sayScale(view);
+}
+
+// A large body at first as while it moves, and soon as at rest.
+function drawFirst(page) {
+  page.first = page.moving = isLarge(page.body);
+  draw(page);
+  if (!page.first) return;
+  page.first = false;
+  page.rest = setTimeout(() => { page.moving = false; page.stale = true; askDraw(page); }, 160);
 }
 
 function moveTo(page, key) {
@@ -132,6 +142,7 @@ function moveTo(page, key) {
   page.cracks = cracksOf(page.body);
   if (page.scene) { page.scene.cracks = page.cracks; putCracks(page.scene); }
   page.movedTo = key;
+  page.shownFrom = null;
   page.stale = true;
 }
 
@@ -206,7 +217,12 @@ function listen(page) {
     again(true)();
   });
   element("colour").addEventListener("change", (event) => { page.colourBy = event.target.value; askDraw(page); });
-  new ResizeObserver(again(isLarge(page.body))).observe(page.canvas);
+  let size = "";
+  new ResizeObserver(() => {
+    const now = `${page.canvas.clientWidth} ${page.canvas.clientHeight}`;
+    if (size && size !== now) again(isLarge(page.body))();
+    size = now;
+  }).observe(page.canvas);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { page.colours = readColours(); page.tinted = null; askDraw(page); });
   for (const button of document.querySelectorAll("button.go")) button.addEventListener("click", () => {
     page.course.set(Number(button.dataset.key));
@@ -282,7 +298,7 @@ async function start() {
     element("course").hidden = true;
   }
   listen(page);
-  draw(page);
+  drawFirst(page);
   drawCurves(page.body, page.course);
   document.documentElement.dataset.ready = "yes";
 }

@@ -41,7 +41,7 @@ function chainsAt(body, m) {
   }
   const never = new Uint16Array(n).fill(NEVER);
   body.node = { at: Float32Array.from(ends) };
-  body.throat = throatsOf(body.node, { first: arrays["chain.first"].subarray(from, from + n), second, radius, leaves: never, ends: never, id: Uint32Array.from({ length: n }, (_, k) => from + k) });
+  body.throat = throatsOf({ first: arrays["chain.first"].subarray(from, from + n), second, radius, leaves: never, ends: never, id: Uint32Array.from({ length: n }, (_, k) => from + k) });
 }
 
 // Brings the grains of BODY to where they are at KEY.
