@@ -5,6 +5,7 @@ have them, what fails, and bad input."""
 import csv
 import json
 import os
+import shutil
 import subprocess
 import sys
 
@@ -169,6 +170,25 @@ os.remove(at("runs/small", lost))
 fine, counts, *_ = study("table", "small.json")
 ok(fine and not counts and table("small")[0]["status"] == "not yet" and table("small")[1]["status"] == "done",
    "tables of what is there", table("small")[0])
+
+# ---- as rules of Makeflow ----------------------------------------------------------------------------
+
+if shutil.which("makeflow"):
+    fine, counts, said, _ = study("makeflow", "small.json", "--name=flow")
+    subprocess.run(["makeflow", "--json", "study.makeflow.json", "-j2"], cwd=at("runs/flow"), capture_output=True, timeout=120)
+    ok(fine and "27 rules" in said and "0 of 27 artifacts to make" in study("plan", "small.json", "--name=flow")[2],
+       "Makeflow makes all of a study, and make knows it", said)
+    alike = [read(at("runs/flow", r["artifacts"][kind])) == read(at("runs/small", r["artifacts"][kind]))
+             for r in records for kind in ("drying", "response")]
+    ok(len(alike) == 16 and all(alike), "by the same bytes")
+    lost = records[0]["artifacts"]["response"]
+    os.remove(at("runs/flow", lost))
+    study("makeflow", "small.json", "--name=flow")
+    with open(at("runs/flow/study.makeflow.json"), encoding="utf-8") as lines:
+        left = [rule["outputs"] for rule in json.load(lines)["rules"]]
+    ok(left == [[lost], [records[0]["artifacts"]["crackstats"]]], "rules are of what is missing, and of what is made from it", left)
+else:
+    ok(True, "rules of Makeflow # SKIP no makeflow is installed")
 
 # ---- bad input: a line that says where, before anything is made ----------------------------------------
 
