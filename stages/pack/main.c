@@ -225,8 +225,10 @@ int main(int argc, char **argv)
     parameters.dynamics.threads = invocation.threads;
     parameters.dynamics.keeper = &checkpoint.keeper;
     struct reached reached = {.dynamic = false};
-    if (parameters.method != METHOD_IMPORT)
+    if (parameters.method != METHOD_IMPORT) {
+        packing.n_bond = 0; // given grains lose their bonds as they move
         make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
+    }
     take_slab(&parameters, &domain, &packing);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters);

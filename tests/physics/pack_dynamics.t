@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 ALL, SIDES = "periodic=[true,true,true]", "periodic=[true,true,false]"
 SMOOTH, ROUGH = "dynamics.friction=0", "dynamics.friction=0.5"
@@ -206,6 +206,14 @@ for title, settings in [("space", ["count=200", "sizes.distribution=normal"]),
        and made.deepest(made.x[:, 2] - made.lower[2]) < 0.02
        and made.reached["unbalanced_ratio"] < 1e-4, f"{title}: the box ends on the highest",
        made.deepest())
+
+# Bonded grains fall as others do.
+bonded = os.path.join(folder.name, "bonded.h5")
+run("pack", "-q", *sets("method=cubic", "counts=[3,3,3]", "bonds=touching"), "-o", bonded)
+fallen = Packing("method=deposition", inputs=[bonded])
+with h5py.File(bonded) as before:
+    ok(len(before["bonds/particles"]) == 54 and fallen.reached["unbalanced_ratio"] < 1e-4,
+       "bonded grains fall, without their bonds")
 
 # A tall silo: walls with friction carry grains, and without do not [Janssen 1895].
 silo = ["method=deposition", "count=300", "radius=1e-3", "upper=[8e-3,8e-3,20e-3]", ROUGH]
