@@ -8,7 +8,8 @@
 
 #include <stdio.h>
 
-// The caller opens LINES and frees what is in it.
+// The caller opens LINES and frees what is in it. N_DIFFERENT begins at 0 and is what
+// the exit status is made from.
 struct comparison {
     double tolerance; // of the largest value of a dataset, or of a lone number; of 1
                       // where that has no unit and is less, as residuals are

@@ -3,6 +3,9 @@
 // ("/mean/cracks/total"). If one of two numbers is real they are compared with the
 // tolerance, relative to the larger; whole numbers, texts and null must be equal. Lists
 // of different length are one difference. Provenance is taken out of both first.
+//
+// A member that only one has is one difference, whatever it holds; of two that differ
+// in kind, both are shown, cut at 60 characters. The order of members does not count.
 #include "compare.h"
 
 #include "basics/status.h"

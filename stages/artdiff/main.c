@@ -4,6 +4,11 @@
 // It reads both files whole, decides by their first bytes whether they are JSON or HDF5
 // (they must be the same), and collects a line for each difference before anything is
 // printed. The exit status is 1 if there are any.
+//
+// A difference in the provenance is none. With the tolerance 0, the default, doubles
+// must be equal to the last bit, but 0 and -0 are; two files that pass need not be
+// equal byte for byte. Order: what both hold is read and checked as any stage would, so
+// a damaged file exits 65 and is never merely different.
 #include "artifacts/document.h"
 #include "basics/status.h"
 #include "compare.h"
@@ -49,6 +54,7 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     }
 }
 
+// Takes the bytes over: they are the images of the artifacts.
 static void compare_hdf5(struct comparison *comparison, struct bytes bytes[2])
 {
     struct artifact *artifact[2];
@@ -59,6 +65,7 @@ static void compare_hdf5(struct comparison *comparison, struct bytes bytes[2])
         artifact_close(artifact[k]);
 }
 
+// Frees the bytes once they are parsed.
 static void compare_json(struct comparison *comparison, struct bytes bytes[2])
 {
     json_t *document[2];
@@ -71,6 +78,7 @@ static void compare_json(struct comparison *comparison, struct bytes bytes[2])
         json_decref(document[k]);
 }
 
+// A pipe may be one of the two; both "-" would leave nothing for the second.
 static void compare_files(struct comparison *comparison)
 {
     struct bytes bytes[2];

@@ -5,6 +5,16 @@
 // where something is wrong, since they would be of the wrong grains.
 //
 // Numbers for people have three digits, those for programs all.
+//
+//     SEVERITY: NAME: text             a line each finding, the worst first
+//     grains, box, contacts, bonds     what was measured; not without grains
+//     suggested, weight, cost          only where nothing is wrong; suggested is what
+//                                      dem-replay takes by --set
+//     nothing is wrong                 likewise
+//
+// JSON has the same under wrong, findings, grains, radius, box, weight, contacts,
+// bonds, suggested, cost (schemas/check.json). Lengths are in m; weights are Bond
+// numbers.
 #include "tell.h"
 
 #include "basics/file.h"
@@ -50,7 +60,8 @@ static void tell_facts(const struct checked *checked, FILE *out)
     fputc('\n', out);
 }
 
-// As --set takes them: a.b=1 c=[1,2,3].
+// As --set takes them: a.b=1 c=[1,2,3]. Members that are neither numbers, lists of
+// three nor objects do not occur.
 static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
 {
     const char *key;
@@ -128,6 +139,7 @@ static json_t *findings_json(const struct findings *findings)
     return list;
 }
 
+// joining_gap is null where bonds join most grains already, or nothing would.
 static json_t *bonds_json(const struct checked *checked)
 {
     const struct bond_facts *bonds = checked->bonds;
@@ -139,6 +151,7 @@ static json_t *bonds_json(const struct checked *checked)
                      isnan(bonds->gap) ? json_null() : json_real(bonds->gap));
 }
 
+// Without grains there is no place where they end.
 static json_t *box_json(const struct checked *checked)
 {
     const struct packing_facts *facts = checked->facts;

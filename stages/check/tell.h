@@ -6,7 +6,9 @@
 #include "bonds.h"
 #include "suggest.h"
 
-// All that was found out; it owns nothing.
+// All that was found out; it owns nothing. Both outputs are made from it and from
+// nothing else, so that they say the same. FACTS, BONDS and CONTACTS are of PACKING;
+// MATERIAL is only for what is suggested. FINDINGS come sorted, the worst first.
 struct checked {
     const struct packing *packing;
     const struct contacts *contacts;

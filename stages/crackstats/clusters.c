@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Union-find over grains with periodic images: each grain knows the image of its
-// parent it lies in. A broken bond whose two grains are in one tree already, but with
-// another image than the bond's, closes a loop around the box: the cluster spans that
-// axis.
+// Union-find over grains with periodic images. Each grain of a tree knows in which
+// image of its parent it lies, and find_root adds these up on the way. Of a bond a - b,
+//     apart = a_from_root + b_from_a - b_from_root
+// is where the other tree's root is, seen from the first one's. Two trees become one,
+// the smaller below the larger, so that ways stay short (O(log n)) without shortening
+// them. If both grains are in one tree already and `apart` is not 0, the broken bond
+// closes a loop around the box: the cluster spans those axes. A loop that closes on
+// itself without leading around has `apart` 0.
+//
+// Along an axis that does not repeat a cluster spans if it has a grain at either end:
+//     x - radius < lowest surface + near,  x + radius > highest surface - near,
+// with `near` the mean radius. Ends are those of the solid grains, not of the box.
 #include "clusters.h"
 
 #include <stdlib.h>
@@ -66,6 +74,8 @@ static double mean_radius(const struct packing *packing)
     return sum / packing->n_particle;
 }
 
+// Auxiliary grains set no end. They may be marked, which does no harm: without a bond
+// they are in no cluster.
 static void mark_ends(const struct packing *packing, struct tree *trees, int axis)
 {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;

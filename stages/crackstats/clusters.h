@@ -15,7 +15,8 @@ struct clusters {
 // Appends the size of each cluster, in broken bonds, to SIZES. A cluster spans along an
 // axis when it has grains within a mean radius of both ends of the aggregate; along a
 // periodic axis, when it leads around the box to its own image. Periodic images are
-// followed bond by bond. The cracks of RUN are taken at its end.
+// followed bond by bond. The cracks of RUN are taken at its end, without those of the
+// weight alone. Sizes come in the order of the roots. O((grains + cracks) log grains).
 struct clusters find_clusters(const struct run *run, struct sizes *sizes);
 
 #endif

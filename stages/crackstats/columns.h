@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The damage of a layer seen from above, in upright columns half a mean diameter wide
-// (docs/craquelure.md).
+// The damage of a layer seen from above, in upright columns half a mean diameter wide,
+// or nearly so, as whole ones fill the box (docs/craquelure.md). The map lies in x and
+// y, and z is up; all is measured before anything has moved.
 #ifndef CRAQUELURE_CRACKSTATS_COLUMNS_H
 #define CRAQUELURE_CRACKSTATS_COLUMNS_H
 
@@ -8,7 +9,8 @@
 
 #include <stdbool.h>
 
-// Columns side by side, the one (x, y) at x + count[0] y. Lengths in m.
+// Columns side by side, the one (x, y) at x + count[0] y. Lengths in m. Where no grain
+// is held, `floor` is the lowest surface of a grain.
 struct columns {
     int count[2], n;      // along x and y; of all
     double edge[2];       // of one
@@ -27,9 +29,11 @@ int column_beside(const struct columns *columns, int column, int dx, int dy);
 // From column A to the nearest image of B, in m along x and y.
 void column_apart(const struct columns *columns, int a, int b, double apart[2]);
 
+// The columns over the box of RUN, which needs a grain. It owns nothing.
 struct columns columns_init(const struct run *run);
 
-// A bond is lateral if neither of its grains is held.
+// A bond is lateral if neither of its grains is held. All are, where `held` is not
+// known.
 bool is_lateral(const struct run *run, int bond);
 
 // The column of the middle of BOND, and its horizontal length, m.

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An ensemble of runs: the statistics of each, and the sums of their tables.
+// An ensemble of runs: the statistics of each, and the sums of their tables. Runs are
+// added one by one and forgotten: only their statistics, patterns and the sizes of
+// their clusters and fragments stay. Sums are made in the order of the inputs.
 #ifndef CRAQUELURE_CRACKSTATS_ENSEMBLE_H
 #define CRAQUELURE_CRACKSTATS_ENSEMBLE_H
 
@@ -35,9 +37,10 @@ struct ensemble {
 struct ensemble ensemble_init(int most_runs, struct classes classes, bool patterns);
 void ensemble_free(struct ensemble *ensemble);
 
-// Adds RUN, which must have as many snapshots as the runs before. LIQUID is the drying
-// that loaded it; NULL: not known. Neither is needed afterwards. The caller has checked
-// that they belong together.
+// Adds RUN, which must have as many snapshots as the runs before; not more runs than
+// there is room for. LIQUID is the drying that loaded it; NULL: not known, then its
+// statistics of the front are NAN and the front is not reported for any. Neither is
+// needed afterwards. The caller has checked that they belong together.
 void ensemble_add(struct ensemble *ensemble, const struct run *run,
                   const struct liquid *liquid);
 

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments by union-find over the intact bonds; auxiliary grains do not count. A bond
-// across a periodic side joins its grains like any other. A single grain is a fragment
-// too.
+// Fragments by union-find over the intact bonds, at any time that INTACT is of: before
+// drying, at the end, at a snapshot. Each is counted at its root, which is its lowest
+// grain, so results do not depend on the order of the bonds. A bond across a periodic
+// side joins its grains like any other. A single grain is a fragment too.
+//
+// Auxiliary grains do not count: a root of none but such grains has the size 0 and is
+// no fragment. O(grains + bonds), nearly.
 #include "fragment_counts.h"
 
 #include "basics/disjoint_sets.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fragments: sets of grains joined by intact bonds.
+// Fragments: sets of grains joined by intact bonds, known by their lowest grain.
 #ifndef CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
 #define CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
 

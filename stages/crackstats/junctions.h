@@ -13,7 +13,8 @@ struct junctions {
     double y_share;      // largest angle below 135 degrees
 };
 
-// All 0 where there is no pattern.
+// The junctions of a pattern, found on the map of columns, so angles are no finer than
+// these allow. All 0 where there is no pattern. O(columns + corners^2).
 struct junctions find_junctions(const struct columns *columns,
                                 const struct polygons *polygons);
 

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // With n the unit vector along a bond before drying,
 //     inclination = atan2(hypot(n_x, n_y), |n_z|),  0 (upright) to pi/2 (level),
+//     class       = that of inclination / (pi/2) among nine: ten degrees each,
 //     fabric     += n n  for each crack, by its mode.
-// The report divides the fabric by its trace (report_tables.c).
+// n and -n are the same bond: |n_z| and the product n n do not tell them apart. By
+// atan2 angles near both ends keep their digits. The report divides the fabric by its
+// trace, which is the number of cracks (report_tables.c).
+//
+// All bonds of the packing count in `bonds`, those too that the weight alone broke. A
+// bond between coincident grains counts there as upright; its crack is left out.
 #include "orientation.h"
 
 #include "count.h"

@@ -16,7 +16,7 @@ struct orientation {
 
 // Adds the bonds of RUN, by their inclination to z from 0 to 90 degrees. Class 0 is
 // upright, along z. Cracks between coincident grains have no direction and are left
-// out.
+// out (their bonds count as upright). O(bonds + cracks).
 void add_orientation(struct orientation *orientation, const struct run *run);
 
 #endif

@@ -6,7 +6,8 @@
 #include "columns.h"
 
 // It owns its arrays; freed with polygons_free. Without a pattern NONE says why, and
-// what follows it is 0 or NULL.
+// what follows it is 0 or NULL; but where no piece was large enough for a polygon LABEL
+// is there, -1 throughout.
 struct polygons {
     double threshold;  // damage of a crack column
     double percentile; // the 98th, of the damage

@@ -13,10 +13,10 @@
 // program ends with status 65 if a bond breaks twice, if a crack is later than the last
 // load, or if the response says that loads did not settle but not which. The caller
 // frees it with run_free.
-struct run read_run(const struct artifact *response); // freed with run_free
+struct run read_run(const struct artifact *response);
 
 // Reads the network and the history of a drying, which must have a step (else status
 // 65). The caller frees it with liquid_free.
-struct liquid read_liquid(const struct artifact *drying); // with liquid_free
+struct liquid read_liquid(const struct artifact *drying);
 
 #endif

@@ -16,8 +16,9 @@ void report_tables(json_t *report, const struct ensemble *ensemble, double confi
 // Adds patterns: the map of each run, where patterns were asked for.
 void report_patterns(json_t *report, const struct ensemble *ensemble);
 
-// Adds what the intervals are of, and the statistics: mean, sd and confidence_interval
-// over the runs (null for one run), those of each run, and the test of the groups.
+// Adds what the intervals are of, and the statistics: mean over the runs, their sd and
+// confidence_interval (null for one run), those of each run, and the test of the groups
+// (null without groups).
 struct groups {
     int first;   // runs in the first, tested against the others; 0: no test
     bool paired; // both groups have the same size, and runs are paired in their order

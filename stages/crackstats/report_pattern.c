@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Patterns as JSON: what pictures are drawn from. Numbers of columns are listed along
-// x, then y.
+// Patterns as JSON: what pictures are drawn from, one object for each run, in the order
+// of the runs. Lengths in m, areas in m2. `damage`, `polygon` and `opened` have one
+// number for each column, along x, then y (columns.h); `polygon` is -1 in cracks and
+// crumbs, `opened` null where the damage never passed the threshold of the end. Where
+// there is no pattern, `none` says why, `areas` is empty, and `polygon` is empty or has
+// no number but -1; damage, threshold and stages are there all the same.
 #include "report.h"
 
 #include <math.h>

@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The statistics as JSON. mean, sd, confidence_interval, each and test are tables of
-// the same shape: `table` goes through the statistics once and asks a function for the
-// value of each, from the runs that a struct column selects. A statistic that some run
-// does not have (NAN) is null in mean, sd, confidence_interval and test.
+// the same shape, {group: {name: ...}} by statistic_names: `table` goes through the
+// statistics once and asks a function for the value of each, from the runs that a
+// struct column selects:
+//     mean, sd, confidence_interval   all runs; the last two null for one run
+//     each                            one run a table, so that the mean is its value
+//     test                            the runs from `first` on, and those before them
+// A statistic that some run does not have (NAN) is null in mean, sd and test, and a
+// pair of nulls in confidence_interval: no run is left out silently. Statistics of
+// patterns, which are the last ones, are there only where patterns are.
+//
+// test has Welch's and Mann and Whitney's tests, and for paired groups also Student's
+// paired one and Wilcoxon's (statistics/). Student's intervals take the runs for
+// independent: seeds must differ.
 #include "basics/memory.h"
 #include "report.h"
 #include "statistics/paired.h"
@@ -44,6 +54,7 @@ static json_t *deviation_of(struct column column, enum statistic fact)
     return deviation;
 }
 
+// Called for two runs or more: with one half_width is NAN.
 static json_t *interval_of(struct column column, enum statistic fact)
 {
     const struct sample sample = take(column, fact);
@@ -70,6 +81,7 @@ static json_t *table(struct column column, json_t *of(struct column, enum statis
     return object;
 }
 
+// Adds the tests of the differences to TEST; A and B have as many values.
 static void test_pairs(json_t *test, struct sample a, struct sample b)
 {
     const struct paired_t t = paired_t_test(a, b);
@@ -84,6 +96,7 @@ static void test_pairs(json_t *test, struct sample a, struct sample b)
                                   json_value(rank.p), "exact", rank.exact));
 }
 
+// Null if a run of either group does not have the statistic.
 static json_t *test_samples(struct sample a, struct sample b)
 {
     if (isnan(sample_mean(a)) || isnan(sample_mean(b))) return json_null();
@@ -123,6 +136,7 @@ static json_t *test(const struct ensemble *ensemble, struct groups groups)
     return test;
 }
 
+// A reader of a lone interval must see what it is of.
 static json_t *what_intervals_are(int runs, double confidence)
 {
     if (runs == 1) return json_string("one run: no interval; repeat over seeds");

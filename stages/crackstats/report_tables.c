@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables as JSON: sums over the runs, divided by their number. The scatter of a
-// count is computed from its mean in the entry that was just made: mean times runs,
-// rounded to a multiple of 1/2, is the exact sum again (scatter.h).
+// The tables as JSON: sums over the runs, divided by their number. The entry of a
+// class, {"normal", "shear", "total", "from", "to"}, is made by `by_mode` and
+// `classes`; `put_scatter` adds `sd` and `confidence_interval` afterwards and takes the
+// mean from the entry:
+//     sum = round(2 mean runs) / 2,   counts being multiples of 1/2,
+// is the exact sum again, so sums need not be handed on. Trap: that holds only for
+// counts; other values must not go this way.
+//
+//     sd = sqrt((n sum of squares - sum^2) / (n (n - 1)))          (scatter.h)
+//     confidence_interval = mean -+ half_width_of(sd)      (statistics/sample.h)
+// Borders of classes are (start (n - k) + end k) / n: exact at both ends. What is not
+// finite is null (json_value), as JSON has no other word for it.
 #include "basics/memory.h"
 #include "report.h"
 #include "statistics/sample.h"
@@ -19,7 +28,7 @@ json_t *json_value(double value)
                : json_real(value);
 }
 
-// Normal and shear have one sum: their means may be fractions, their total is of both.
+// The total is the mean of the sum, rounded once, not the sum of two rounded means.
 static json_t *by_mode(const double of[MODE_COUNT], double runs)
 {
     return json_pack("{s:o,s:o,s:o}", "normal", json_value(of[MODE_NORMAL] / runs),
@@ -195,6 +204,8 @@ static json_t *deformation(const struct ensemble *ensemble)
     return list;
 }
 
+// Null unless each run had its drying: means over some of the runs would not fit the
+// other tables.
 static json_t *front(const struct ensemble *ensemble)
 {
     if (ensemble->n_liquid < ensemble->n_run) return json_null();

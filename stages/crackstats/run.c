@@ -2,7 +2,13 @@
 // Bonds of a periodic packing join a grain to the nearest image of another: along each
 // axis that repeats,
 //     image = -round((x_1 - x_0) / edge),
-// from the positions before drying.
+//     bond_vector = (x_1 - x_0) + image * edge,
+// from the positions before drying, in m. The packing does not say which image was
+// bonded: in a box of two grains across, where two images are as near, one of them is
+// taken, and always the same.
+//
+// Whether bonds hold: those that the weight alone broke never did as far as cracks are
+// concerned (bonds_before); those of /cracks no longer do at the end (bonds_left).
 #include "run.h"
 
 #include "basics/memory.h"

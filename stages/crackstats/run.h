@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One run, as read from its response artifact.
+// One run, as read from its response artifact; read.h says what has been checked.
 #ifndef CRAQUELURE_CRACKSTATS_RUN_H
 #define CRAQUELURE_CRACKSTATS_RUN_H
 
@@ -27,15 +27,16 @@ struct run {
     uint8_t *intact;             // (n_snapshot, n_bond) 1: holds
 };
 
-// The periodic image of the second grain of BOND that is nearest to the first. 0 along
-// an axis that does not repeat.
+// The periodic image of the second grain of BOND that is nearest to the first, by the
+// places in PACKING, those before drying. 0 along an axis that does not repeat. O(1).
 struct image bond_image(const struct packing *packing, int bond);
 
 // The vector from the first grain of BOND to the second before anything has moved, m.
 struct vector bond_vector(const struct packing *packing, int bond);
 
-// 1 for each bond that holds when drying begins, or that no crack broke. (n_bond); the
-// caller frees it.
+// 1 for each bond that holds when drying begins (bonds_before: all but those that the
+// weight alone broke), or at the end (bonds_left: without those of the cracks as well).
+// (n_bond); the caller frees it.
 uint8_t *bonds_before(const struct run *run);
 uint8_t *bonds_left(const struct run *run);
 

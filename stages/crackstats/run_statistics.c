@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names of the statistics in the report: keys of mean, sd, confidence_interval, each
-// and test. Readers depend on them: never rename.
+// and test, as {group: {name: value}}. Readers depend on them: never rename.
+//
+// By enum statistic, so the order here is of no consequence; the order of groups in the
+// report is that of the enum. Each statistic must be named, as report_statistics.c goes
+// through all up to POLYGONS_FOUND and, with patterns, beyond. A name may come in
+// several groups ("count", "largest"), but once in each. What each one means, its unit
+// and where it is NAN is said in run_statistics.h.
 #include "run_statistics.h"
 
 const struct statistic_name statistic_names[STATISTIC_COUNT] = {

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sums of squares of counts over the runs; counts are multiples of 1/2, so that
-//     sd^2 = (n sum of squares - (sum)^2) / (n (n - 1))
-// is a difference of exact numbers.
+// Sums of squares of counts over the runs. With n runs
+//     sd^2 = (n sum of squares - (sum)^2) / (n (n - 1)),
+// a difference of nearly equal numbers where runs are alike. Counts are multiples of
+// 1/2, their squares of 1/4, so sums and products are exact while they stay below 2^51,
+// the difference has no rounding error and is never below 0: equal runs scatter by
+// exactly 0.
+//
+// The third column is (normal + shear)^2 of each run, which the squares of both do not
+// give. So squares must be taken run by run, before counts of several are added.
 #include "scatter.h"
 
 #include "basics/memory.h"

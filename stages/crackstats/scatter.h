@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scatter over the runs of the counts in each period, slice, interval and
-// inclination.
+// inclination: kept as sums of squares, so that no run must be remembered.
 #ifndef CRAQUELURE_CRACKSTATS_SCATTER_H
 #define CRAQUELURE_CRACKSTATS_SCATTER_H
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sizes of clusters or fragments, collected over runs: one number each, in throats or
-// grains, in the order in which they are found.
+// Sizes of clusters or fragments, collected over runs: one number each, in broken bonds
+// or grains, in the order in which they are found, run after run. The report sorts them
+// and counts equal ones.
 #ifndef CRAQUELURE_CRACKSTATS_SIZES_H
 #define CRAQUELURE_CRACKSTATS_SIZES_H
 

@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Finds the surface that a node with a wall's bit lies on: the nearest side of the box
-// or of a body with that wall, and for flat ones how far it has moved.
+// Finds the surfaces that a node with walls' bits lies on. A wall 0..5 of the box holds
+// it if the node is on it, to 1e-9 of the diagonal. WALL_OUTER and WALL_INNER have no
+// number of their own for each side: of all bodies with that wall the side nearest to
+// the node is taken, however far,
+//     off = |coordinate - side| of a flat one,
+//     off = distance to the nearest point of the round one,
+// all extended beyond their edges. So WALLS must not have these two bits for a node
+// that lies on no body. A flat side holds the node along its axis and takes it along by
+// its own step; a round one is only named, and the caller moves along it.
+//
+// Walls of the box come last: at an edge with the flat end of a body, which lies in the
+// same plane, the step is that of the box.
 #include "domain_sides.h"
 
 enum { ROUND_SIDE = WALL_COUNT, SIDE_COUNT };
 
+// Where flat side 0..5 of the body stands along its axis, numbered as walls are; m.
 static double corner_of(const struct body *body, int side)
 {
     return component(side % 2 ? body->upper : body->lower, side / 2);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The surfaces that a node of a network lies on: walls of the box, sides of bodies.
+// Along each axis that a flat one holds, the node moves as that surface does; on a
+// round one it may move along it; where nothing holds it, freely.
 #ifndef CRAQUELURE_DEFORM_DOMAIN_SIDES_H
 #define CRAQUELURE_DEFORM_DOMAIN_SIDES_H
 
@@ -12,8 +14,9 @@ struct domain_sides {
 };
 
 // The sides of a node AT in WALLS (bits of enum wall, and of WALL_OUTER and WALL_INNER)
-// of BEFORE; AFTER has the same surfaces where they are now. Walls that the node only
-// faces do not count.
+// of BEFORE, m; AFTER has the same surfaces where they are now. Walls 0..5 that the
+// node only faces do not count; of WALL_OUTER and WALL_INNER the nearest side is taken
+// in any case, so WALLS should have them only for nodes on a body.
 struct domain_sides find_domain_sides(const struct packing *before,
                                       const struct packing *after, unsigned walls,
                                       struct vector at);

@@ -1,10 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // deform: the network of grains that have moved.
 //
-// Reads the network twice: `before` stays as it was, `after` gets the places of the
-// response and a box moved with them. Then one of three: write the packing alone; carry
-// the liquid of a drying to another network, the third input (replace); or move nodes
-// and throats with the grains around them (move).
+// Inputs, in this order: a drying or a network; the response of the same grains, whose
+// last snapshot says where they are; and perhaps a third, a network of these places.
+// The first is read twice: `before` stays as it was, `after` gets the places of the
+// response (take_places) and a box moved with them (move_box). Then one of three:
+//     write_packing   write=packing: the moved grains alone, for tessellate;
+//     replace         a third input: that network, with the liquid of the first (and
+//                     with radii=carried its radii) carried over to it;
+//     move            else: nodes, lengths, radii, volumes and conductances of `before`
+//                     follow the grains; connections stay. If the moved grains have
+//                     another diagram, nothing is written (status 1), but for
+//                     on_change=keep.
+//
+// move needs this order: nodes first, as lengths and clearances are measured between
+// them; then count_changed_nodes, as volumes and conductances are found anew from the
+// faces only if these are still those of the diagram; liquid last, as it needs the new
+// volumes. Only a drying has liquid; of a network none is known and none is written.
+//
+// Written: a network with /throats/saturation and /summary/liquid_volume and
+// expelled_volume (where liquid is known), changed_nodes and closed_throats; or a
+// packing. Numbers that overflow are blamed on the response (check_moved).
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "artifacts/write_network.h"
@@ -73,6 +89,7 @@ struct scene {
 
 // ---- input --------------------------------------------------------------------------
 
+// The caller closes it. Exits 65: neither a drying nor a network.
 static struct artifact *open_network(const char *path)
 {
     struct artifact *input = artifact_open(path, NULL);
@@ -83,7 +100,9 @@ static struct artifact *open_network(const char *path)
     return input;
 }
 
-// Where the grains were at the last snapshot of RESPONSE, in place of their places.
+// Where the grains were at the last snapshot of RESPONSE, in place of their places:
+// displacements are from where the response itself began. Exits 65: other grains, by
+// their number, or no snapshot.
 static void take_places(const struct artifact *response, struct packing *packing)
 {
     struct packing began = artifact_get_packing(response);
@@ -154,11 +173,14 @@ static struct mapped_liquid keep_liquid(const struct network *before,
     return kept;
 }
 
+// The walls through which DRYING let gas in, as bits of enum wall.
 static unsigned open_walls(const struct artifact *drying)
 {
     return (unsigned)artifact_get_number(drying, "/summary/open_walls");
 }
 
+// Puts CARRIED into throats of other volumes (redistribute_liquid), frees its arrays,
+// and sums what has found room. The caller frees the saturations.
 static struct liquid settle(const struct artifact *drying,
                             const struct network *network,
                             struct mapped_liquid *carried)
@@ -178,6 +200,8 @@ static struct liquid settle(const struct artifact *drying,
 
 // -------------------------------------------------------------------------------------
 
+// Schemas allow no larger numbers. That grains flew apart is the response's fault, so
+// the message names that file.
 static void check_moved(const struct network *network, const char *path)
 {
     static const double largest = 1e150; // as the schemas have it
@@ -249,7 +273,8 @@ static double *find_saturations(const struct scene *scene)
     return last_saturations(scene->input, &scene->before);
 }
 
-// The network as it is connected.
+// The network as it is connected. Nodes without a place on their round surface count as
+// changed.
 static void move(struct scene *scene)
 {
     const struct deform_parameters *parameters = scene->parameters;
@@ -282,6 +307,7 @@ static void move(struct scene *scene)
     free(liquid.saturation);
 }
 
+// The third input must be a network of the moved grains, in the same order.
 static void check_same_grains(const struct scene *scene, const struct network *renewed,
                               const char *path)
 {
@@ -327,7 +353,8 @@ static void replace(struct scene *scene)
     artifact_close(third);
 }
 
-// The moved grains alone.
+// The moved grains alone. Porosity counts overlaps twice as solid; max_overlap is over
+// the smaller radius; no force is known, so unbalanced_ratio is 0.
 static void write_packing(const struct scene *scene)
 {
     const struct packing *packing = &scene->after.packing;

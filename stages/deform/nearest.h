@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The nearest of many points, in a box that may be periodic.
+// The nearest of many points, in a box that may be periodic: there distances are those
+// to the nearest image.
 #ifndef CRAQUELURE_NEAREST_H
 #define CRAQUELURE_NEAREST_H
 
@@ -12,13 +13,14 @@ struct places {
     struct linked_cells cells;
 };
 
-// O(n). Keeps PACKING and AT. The caller frees it with places_free.
+// For the N places AT. O(n). Keeps PACKING and AT: they must not change or go before
+// places_free, which frees what it owns itself.
 struct places places_init(const struct packing *packing, int n,
                           const struct vector *at);
 void places_free(struct places *places);
 
 // The index of the place nearest to FROM, the lowest of equals; -1 if there is none.
-// O(1) for evenly spread places.
+// O(1) for evenly spread places; right for any others. Safe for several threads.
 int nearest_place(const struct places *places, struct vector from);
 
 #endif

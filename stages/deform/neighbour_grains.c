@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Both sides of every face are grains around the nodes of its loop. In a periodic box
-// the image of a grain is relative to the node: image of the side minus image of the
-// corner.
+// corners and the second side have images as seen from the first side; from the node at
+// a corner
+//     image of the first side  = 0      - image of the corner,
+//     image of the second side = its own - image of the corner.
+// Each grain is met once for every face of it at the node: rows are filled with all of
+// them, two a corner at most, then sorted by grain and image and each kept once. What
+// is kept moves together in place, towards the beginning. O(corners) while nodes have a
+// few faces.
+//
+// A side below 0 is a wall and gives the node its bit. So these bits are of walls that
+// the node lies on, where node_walls may have those that it only faces
+// (tessellate/surface_marks.c); in a layer, whose faces are its cells, there is nothing
+// but node_walls.
 #include "neighbour_grains.h"
 
 #include "basics/memory.h"

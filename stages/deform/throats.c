@@ -1,9 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths change with the distance of the nodes, l' = l |d'| / |d|; radii with the
-// clearance, r' = r + (c' - c) min(1, r / c) (throats.h). Volumes that were shares of
-// the void are computed again; others change as the cylinders of their throats and are
-// then scaled by one factor, so that their sum changes by exactly as much as the void
-// of the box does.
+// clearance, r' = r + (c' - c) min(1, r / c) (throats.h). So a length that was not the
+// distance of its nodes keeps its ratio to that, and a drawn radius its share of the
+// clearance.
+//
+// Volumes that were shares of the void are computed again; others change as the
+// cylinders of their throats, r'^2 l' / (r^2 l), and are then scaled by one factor, so
+// that their sum changes by exactly as much as the void of the box does. Conductances
+// that were those of the open section are found again; others follow the cylinders,
+//     diffusion ~ r^2 / l,  flow ~ r^4 / l,  hydraulic radius ~ r.
+// Which of the two they were is found by computing them for `before` and comparing
+// (1e-9 of the largest): the network does not say where they come from. Trap: the flow
+// conductances and hydraulic radii are not compared, only those of diffusion.
+//
+// If no grain has moved volumes and conductances stay, digit by digit.
 #include "throats.h"
 
 #include "basics/memory.h"
@@ -87,6 +97,7 @@ double moved_radius(double radius, double before, double after)
     return fmax(0, radius + share * (after - before));
 }
 
+// AFTER has the faces of BEFORE, so its clearances cannot fail where those did not.
 enum status move_throats(const struct network *before, enum clearance how,
                          struct network *after, struct reason *reason)
 {
@@ -132,6 +143,8 @@ double packing_domain_volume(const struct packing *packing)
     return room - holes;
 }
 
+// The void of the domain, m3: its volume without all solid in the box, where what two
+// grains share counts once (geometry/porosity.h).
 static double void_of(const struct packing *packing)
 {
     struct contacts contacts;
@@ -173,6 +186,7 @@ static double cylinder(const struct network *network, int t)
            network->throat_length[t];
 }
 
+// A throat without a cylinder keeps its volume but for the common factor.
 static void scale_volumes(const struct network *before, struct network *after)
 {
     double old = 0, now = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bonds by distance: pairs of grains whose gap is at most a part of the sum of their
-// radii.
+// radii. Grains that touch are those with a gap of rounding. Pairs come sorted and with
+// the lower grain first, for any number of threads, so the numbers of bonds, and what
+// is drawn for them, repeat.
 #include "bonds.h"
 
 #include "basics/memory.h"

@@ -2,6 +2,10 @@
 // A grain is fixed if it touches one of the walls, lies in the region, or is listed.
 // The region includes its surface; where none is given its corners are NAN, which no
 // centre lies between. Parameters are checked before anything is allocated.
+//
+// A wall holds grains that touch it to 1e-6 of their radius, or reach beyond it
+// (touches_walls). Numbers of grains are those of the packing, from 0, and come as
+// doubles: one that is no whole number is refused, not rounded.
 #include "fixed_grains.h"
 
 #include "basics/memory.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of the load, and the forces of a step. A load is stored row by row: the force on
-// grain i at step k is force[k n_particle + i].
+// grain i at step k is force[k n_particle + i]. Steps below 0 have the weight in place
+// of a row. The forces of a step are a copy, since engines take net loads off them.
 #include "replay_engine.h"
 
 #include <string.h>

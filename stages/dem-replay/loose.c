@@ -2,7 +2,9 @@
 // Loose fragments: those of the graph of intact bonds without a fixed grain. Each is
 // copied to a packing of its own, and the net force and moment are removed there as
 // inertia forces of a rigid motion (geometry/net_load.h); what remains is in
-// equilibrium with itself.
+// equilibrium with itself. Places are those of now (packing plus displacement), since a
+// fragment may have turned. Moments of all fragments are about one point, the lower
+// corner of the box, so that they may be added.
 #include "loose.h"
 
 #include "basics/memory.h"

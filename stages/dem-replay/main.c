@@ -6,6 +6,19 @@
 // (choose_grains), because the choice of the engine and the strengths depend on them;
 // the weight before the replay, because it is added to every row of the load. After the
 // replay come warnings, then the artifact.
+//
+// In full: parameters; forces, or a packing that only shrinks; the liquid of bridges;
+// the load; the earlier response; bonds, engine, strengths, held grains; the weight;
+// the checkpoint; the replay (replay.h); the response (write_response.c).
+//
+// From forces it reads the packing, /time, /saturation and /force, the liquid, and
+// /liquid_mass where grains shrink with it. From an earlier response it reads packing
+// and /engine. It writes cracks, history, contacts and snapshots, with keep_state the
+// engine's state for another replay.
+//
+// Exits 65 for inputs that do not fit each other or the parameters, 3 for a replay that
+// was unstable or, if so wanted, did not come to rest. Bad data found in the replay are
+// those of a state that was kept, so messages then name that file.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
@@ -35,7 +48,8 @@ static const struct stage stage = {
         "have broken. Displacements count from the first positions of its grains.",
     .checkpoints = true};
 
-// Without a bond nothing can break, whatever the forces.
+// Without a bond nothing can break, whatever the forces. Bridges alone may be what is
+// wanted, and so may contacts alone, but then the user says so.
 static void check_bonds(const struct replay_parameters *parameters,
                         const struct packing *packing)
 {
@@ -66,7 +80,8 @@ static void warn_if_unheld(const struct packing *packing, const uint8_t *held)
             supported, n);
 }
 
-// Bonds between a held grain and one that is not are FACTOR times as strong.
+// Bonds between a held grain and one that is not are FACTOR times as strong, on top of
+// their scatter. Held grains must be known.
 static void strengthen_substrate(double factor, const struct packing *packing,
                                  struct replay_settings *settings)
 {
@@ -139,7 +154,8 @@ static bool is_packing(const struct artifact *input)
     return !strcmp(input->schema->name, "packing");
 }
 
-// A load without forces, under which a packing only shrinks.
+// A load without forces, under which a packing only shrinks: n rows a second apart, of
+// saturations from (n-1)/n to 0, so that the first row has shrunk already.
 static struct load shrinking_load(const struct artifact *input,
                                   const struct replay_parameters *parameters,
                                   int n_particle)

@@ -5,6 +5,21 @@
 //
 // Defaults are K's aggregate [K Table 5.1]: grains of 250 nm. warn_of_defaults tells
 // those who have other grains.
+//
+// Rows in this order: the material of grains and contacts; bonds, their strengths and
+// who has them; prestress and shrinkage; what holds the body; the engine, first that by
+// equilibria; bridges; time steps and cycles of the explicit engine; what is written.
+// Most rows fill `settings` as it is. Choices go to members of their own, as int, and
+// are cast in complete_settings to enums of the same order.
+//
+// main completes in this order: complete_settings; complete_bridges, once the forces
+// are open; choose_engine, once bonds are known; held grains, strengths and weight in
+// main.c and take_weight.c.
+//
+// Traps: a parallel bond is given by stiffness and strength per area, a contact bond by
+// a force, and the other's numbers are not looked at. With engine=auto a wet, shrinking
+// or frictional scene runs by cycles whatever else is said; quasi_static.* then does
+// nothing.
 #include "parameters.h"
 
 #include "replay_engine.h"
@@ -240,7 +255,8 @@ static void choose_bonds(const struct replay_parameters *parameters,
 }
 
 // What the user leaves open comes from the forces, and what these leave open from water
-// at 20 degrees Celsius. The engine wants the contact angle in radians.
+// at 20 degrees Celsius. The engine wants the contact angle in radians. A difference is
+// told only where there are bridges; without them the liquid does nothing here.
 const char *complete_bridges(struct replay_parameters *parameters,
                              const struct artifact *forces, char *difference,
                              size_t size)
@@ -284,6 +300,8 @@ static const char *why_cycles(const struct replay_settings *settings)
                  "equilibria";
 }
 
+// Also an engine that the user names is asked whether it can do all that is wanted:
+// better refused before the replay than left out of it.
 void choose_engine(const struct replay_parameters *parameters,
                    const struct packing *packing, struct replay_settings *settings)
 {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parameters of dem-replay.
+// The parameters of dem-replay: the table, and what of them must be known together. The
+// functions below are called in their order: the first needs no file, the second the
+// forces, the third the bonds.
 #ifndef CRAQUELURE_REPLAY_PARAMETERS_H
 #define CRAQUELURE_REPLAY_PARAMETERS_H
 
@@ -42,7 +44,8 @@ const char *complete_bridges(struct replay_parameters *parameters,
 
 // Sets .engine and .engine_reason of SETTINGS. With engine=auto that is the
 // quasi-static one if friction is 0, support is fixed, bonds are parallel, overlaps at
-// rest, there are bonds but no bridges, and at most 1500 grains (docs/equilibrium.md).
+// rest, nothing shrinks, there are bonds but no bridges, and at most 1500 grains
+// (docs/equilibrium.md).
 // Bonds must be known. Ends the program with status 65 if the engine cannot do what is
 // asked of it.
 void choose_engine(const struct replay_parameters *parameters,

@@ -35,7 +35,8 @@ enum unsettled {
     UNSETTLED_GOES_ON // it is counted
 };
 
-// Forces over time, as forces.h5 holds them: row k is step k of the replay.
+// Forces over time, as forces.h5 holds them: row k is step k of the replay. Row k of
+// .force has that on grain i at k n_particle + i. The caller of replay owns it.
 struct load {
     int n_time;
     double *time, *saturation; // (n_time) s, rising; of the network, from 1 down
@@ -94,7 +95,9 @@ struct snapshot {
     int n_contact;
 };
 
-// What came out of a replay; freed with response_free.
+// What came out of a replay; it owns its arrays, freed with response_free. Rows
+// (n_time) are those of the load. All is in SI; the moment of a reaction is about the
+// lower corner of the box.
 struct response {
     int n_crack; // of this replay; an earlier one's are not among them
     struct dem_crack *crack;

@@ -7,6 +7,20 @@
 // where there are none, and the ratio under the weight where it is NAN: NAN would be
 // out of every range. Nothing read is used before it is checked, as a file may have
 // been changed.
+//
+// With n grains, b bonds, t rows of the load, s snapshots so far, c contacts in these:
+//     step, step_began (1)               the row on the way, its first cycle
+//     unbalanced_ratio, cycles, cracks,
+//     settled (t), reaction (t, 6)       all rows; those to come still 0
+//     crack_step (cracks of this replay) the cracks themselves are the engine's
+//     weight_cracks (1), weight_unbalanced_ratio (1, or 0: NAN)
+//     snapshot_step (s), _displacement and _force (s, n, 3), _intact (s, b)
+//     snapshot_contacts (s)              how many of the c each has
+//     contact_particle (c, 2), _bond, _overlap (c), _force, _position (c, 3)
+//     contact_bridge (c, 2)              volume and force
+// save_load adds force (n, 3) and taken_off (6); save_loads makes load_force (rows, n,
+// 3). Units are SI. Arrays have no shapes in the file, only lengths, so each is read
+// with the length that it must have.
 #include "replay_checkpoint.h"
 
 #include "basics/memory.h"
@@ -15,13 +29,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Numbers beyond `largest` are no state of a run; `most_cycles` is the last whole
-// number before doubles have gaps.
+// Numbers beyond LARGEST are no state of a run. MOST_CYCLES is the last whole number
+// before doubles have gaps.
 static const double LARGEST = 1e150, MOST_CYCLES = 0x1p53;
 static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
 
 // ---- out ----------------------------------------------------------------------------
 
+// Only what observe fills in and the step; times follow from the load.
 static void save_snapshots(struct array_list *list, const struct response *response,
                            const struct packing *packing)
 {
@@ -170,6 +185,8 @@ struct array_list save_loads(const struct array_list *earlier,
 
 // ---- in -----------------------------------------------------------------------------
 
+// The forces of the step on the way, with what was taken off already: they cannot be
+// found again from the load alone, as loose grains depend on what has broken.
 enum status restore_load(const struct array_list *list, int n_particle,
                          struct vector *force, struct net_load *taken_off,
                          struct reason *reason)

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a replay besides the engine's, as named arrays.
+// The state of a replay besides the engine's, as named arrays. The names, lengths and
+// units of all arrays stand at the top of replay_checkpoint.c.
+//
+// There are two uses. A checkpoint is of a replay on the way: its response so far, and
+// by cycles the forces of the step. With keep_state the end of a replay by equilibria
+// goes into the response, as all loads up to there. Lists that are made own copies;
+// whoever gets one frees it with free_arrays. Lists that are read keep what they have:
+// pointers into them live as long as they do.
 #ifndef CRAQUELURE_REPLAY_CHECKPOINT_H
 #define CRAQUELURE_REPLAY_CHECKPOINT_H
 
@@ -14,11 +21,13 @@ struct replay_place {
 };
 
 // RESPONSE and PLACE as a new list, which keep_state frees. N_TIME: rows of the load.
+// Its size grows with snapshots and their contacts, not with the cycles done.
 struct array_list save_response(const struct response *response,
                                 const struct packing *packing, int n_time,
                                 struct replay_place place);
 
 // Adds the FORCE (n_particle, N) on the grains to LIST, and the net load TAKEN_OFF it.
+// Only replays by cycles need them.
 void save_load(struct array_list *list, const struct vector *force, int n_particle,
                struct net_load taken_off);
 

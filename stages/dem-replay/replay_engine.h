@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The interface of an engine to the replay; the two engines are replay_by_*.c.
+// The interface of an engine to the replay; the two engines are replay_by_*.c. The
+// replay knows steps, records and snapshots; an engine knows how a body comes to rest
+// under the forces of one step. So both have the same results in the same places.
 #ifndef CRAQUELURE_REPLAY_ENGINE_H
 #define CRAQUELURE_REPLAY_ENGINE_H
 
 #include "replay.h"
 #include "replay_checkpoint.h"
 
-// A replay on the way. It owns .force; the engine owns .state.
+// A replay on the way. It owns .force; the engine owns .state. All else belongs to the
+// caller of replay.
 struct run {
     const struct packing *packing;
     const struct load *load;
@@ -60,13 +63,14 @@ struct replay_engine {
     struct array_list (*save)(const struct run *); // for a later replay
     void (*end)(struct run *); // what is to be said goes into the response; all freed
 };
+// By time steps of discrete elements [K 4]; by each state of equilibrium directly.
 extern const struct replay_engine replay_by_cycles, replay_by_equilibria;
 
 // The engine that SETTINGS name.
 const struct replay_engine *replay_engine(const struct replay_settings *settings);
 
 // Sets run->force to the row of the load at the present step, or to the weight before
-// it.
+// it. A copy: what is taken off does not change the load. O(n_particle).
 void take_forces(struct run *run);
 
 #endif

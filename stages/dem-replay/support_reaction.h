@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The reaction of the supports: fixed grains, and the wall beneath.
+// The reaction of the supports: fixed grains, and the wall beneath. Both engines give
+// it in the same terms: all that the supports do to the grains, of which each fixed
+// grain's own load is a part. O(n_particle).
 #ifndef CRAQUELURE_SUPPORT_REACTION_H
 #define CRAQUELURE_SUPPORT_REACTION_H
 

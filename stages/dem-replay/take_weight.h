@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The weight as the user asks for it, and warnings about it and about other scales.
+// The weight as the user asks for it, and warnings about it and about other scales. The
+// sum itself is in weight.h; here is what belongs to the stage: parameters, messages,
+// the artifact.
 #ifndef CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
 #define CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The weight of the body: a load under which it is at rest before drying begins.
+// The weight of the body: a load under which it is at rest before drying begins, and
+// which stays on it while it dries.
 #ifndef CRAQUELURE_DEM_REPLAY_WEIGHT_H
 #define CRAQUELURE_DEM_REPLAY_WEIGHT_H
 

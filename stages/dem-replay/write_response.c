@@ -4,6 +4,17 @@
 // saturation of the load it opened under, not of the cycle. Contacts with a wall are
 // left out. The tables of snapshots are (n_snapshot, n_contact), so their size grows
 // with all contacts that there ever were.
+//
+// With n grains, b bonds, k rows of the load, s snapshots, c pairs:
+//     packing, /bonds/relative_strength (b), /particles/held (n)
+//     /cracks     bond, time, saturation, mode, position (n_crack)
+//     /history    time, saturation, unbalanced_ratio, cycles, cracks, settled,
+//                 reaction_force, reaction_moment (k)
+//     /contacts   particles (c, 2): bonded at the start, or in contact at a snapshot
+//     /snapshots  time, saturation (s); displacement, force (s, n); bond_intact (s, b);
+//                 contact_force (s, c); with bridges bridge_volume, _force, _gap (s, c)
+//     /summary    cracks, time step, and how far from rest and from the start
+// SI units; forces on the grains, displacements from where the packing has them.
 #include "write_response.h"
 
 #include "basics/memory.h"
@@ -87,7 +98,8 @@ static void append(struct contact_list *list, const int32_t pair[2])
 }
 
 // Pairs bonded at the start, or touching or joined by a liquid bridge at a snapshot,
-// each once; walls left out.
+// each once; walls left out. Bonded ones are there even when no snapshot has them, so
+// that a broken bond keeps its column. O(c log c).
 static struct contact_list all_contacts(const struct packing *packing,
                                         const struct response *response)
 {

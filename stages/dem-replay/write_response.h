@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A response as an artifact.
+// A response as an artifact. The datasets and their shapes stand at the top of
+// write_response.c, their rules in schemas/response.json.
 #ifndef CRAQUELURE_WRITE_RESPONSE_H
 #define CRAQUELURE_WRITE_RESPONSE_H
 
@@ -8,7 +9,8 @@
 
 // Puts cracks, history, contacts and snapshots into a response artifact. PACKING must
 // be that of the replay, with its bonds; the caller adds the weight (put_weight), the
-// engine's state and the provenance, and finishes the artifact.
+// engine's state and the provenance, and finishes the artifact. Ends the program on
+// failure. LOAD gives cracks and snapshots their times.
 void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);

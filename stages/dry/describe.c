@@ -2,6 +2,10 @@
 // Lines of the artifact's `model`: what was modelled, with the numbers that matter, and
 // what was left out. They follow the switches and nothing else, so the text cannot
 // claim what was not computed. 17 digits give a double back exactly.
+//
+// A reader of an artifact, years later, has only this text to know the model by. So
+// what is left out is named as well, each effect under the same name as where it is
+// switched on. Lines are cut at the size of the buffer, never written past it.
 #include "describe.h"
 
 #include "conditions.h"

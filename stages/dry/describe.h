@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The model of liquid and menisci in words: lines of the artifact's `model`.
+// The model of liquid and menisci in words: lines of the artifact's `model`. They say
+// what a reader cannot see in the numbers, and what the model leaves out.
 #ifndef CRAQUELURE_DRY_DESCRIBE_H
 #define CRAQUELURE_DRY_DESCRIBE_H
 

@@ -3,6 +3,15 @@
 // that the default depends on the network, the liquid or another parameter, and
 // complete_conditions finds it. Rows of liquids, gas and drawn radii are shared with
 // other stages (parameters/conditions.h, network/drawn_radii.h).
+//
+// Rows in this order: the liquid and its forces; walls; radii to draw; properties of
+// liquid and gas; the boundary layer; where the run begins, ends and what it records.
+//
+// Trap: a choice is stored as its place in .choices and cast to an enum later. So the
+// order of liquid must be that of enum liquid_limit, of boundary_layer.from that of
+// enum transfer_law, of boundary_layer.columns that of enum boundary_feet. A set of
+// walls is stored as bits in the order of .choices, which are the bits of enum wall;
+// outer and inner are WALL_OUTER and WALL_INNER.
 #include "parameters.h"
 
 #include "basics/memory.h"
@@ -147,6 +156,10 @@ static unsigned needed_properties(const struct dry_parameters *parameters)
     return needed;
 }
 
+// From what was given to what the run uses. `conditions_complete` looks up what the
+// named liquid has at the temperature; of what is not known it refuses only what this
+// run needs, the rest stays NAN. The law of the boundary layer is settled last: without
+// a mass transfer coefficient the thickness holds.
 static enum status complete_fluids(struct dry_parameters *parameters,
                                    struct reason *reason)
 {
@@ -173,6 +186,9 @@ static enum status complete_fluids(struct dry_parameters *parameters,
     return status;
 }
 
+// After the network is read, since the default of step_interval depends on its size.
+// Fluids come first: they alone can fail, and then nothing has been allocated. A list
+// at even intervals replaces `snapshots`; main has refused to have both.
 enum status complete_conditions(struct dry_parameters *parameters,
                                 const struct network *network, struct reason *reason)
 {

@@ -31,6 +31,8 @@ struct dry_parameters {
     struct drawn_radii radii;
 };
 
+// Fills a struct dry_parameters but for .even_snapshots, .shut and .enclosed, and for
+// what complete_conditions writes to .conditions.
 extern const struct parameter dry_table[];
 
 // Completes .conditions from the parameters that were not read directly into them and

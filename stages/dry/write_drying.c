@@ -2,6 +2,19 @@
 // The drying artifact: history, events and changes as they were recorded, profiles and
 // snapshots made from them, a summary with the balances. Only here do results get
 // names. Datasets are those of schemas/drying.json.
+//
+//     network      as the run used it: radii drawn, throats shut or imposed empty
+//     /history     (n_step) time s, saturation, rate kg/s, clusters, normalised_rate
+//     /events      (n_event) time s, throat, kind (enum event_kind)
+//     /changes     offset (n_step + 1), throat and saturation (offset[n_step])
+//     /profiles    (9) time, saturation, surface_saturation; (9, PROFILE_SLICES)
+//                  slice_saturation; (9, PROFILE_CLASSES) clusters; depth
+//     /snapshots   (n_snapshot) time, saturation; (n_snapshot, n_throat)
+//                  throat_saturation; (n_snapshot, n_node) liquid_pressure, Pa
+//     /boundary_layer (write_layer.c), /liquid, /gas, /summary
+//
+// Trap: profiles and snapshots belong to the first recorded step with at most their
+// saturation, so /profiles/saturation and /snapshots/saturation say what it was.
 #include "write_drying.h"
 
 #include "artifacts/liquid.h"
@@ -16,7 +29,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// The time of the first step at or below that saturation.
+// The time of the first step at or below that saturation. 0 stands for a period that
+// did not end: then only a dry network is as low, or the last step counts.
 static double first_period_end_time(const struct drying_history *history)
 {
     for (int k = 0; k < history->n_step; k++)
@@ -36,7 +50,7 @@ static void put_normalised_rate(struct artifact *artifact,
     free(rate);
 }
 
-// At the steps of the profiles.
+// At the steps of the profiles. GROUP without slashes.
 static void put_moments(struct artifact *artifact, const char *group,
                         const struct drying_history *history,
                         const struct profiles *profiles)
@@ -76,6 +90,8 @@ static void put_profiles(struct artifact *artifact, const struct network *networ
     profiles_free(&profiles);
 }
 
+// Throats at the levels that were asked for. Pressures were kept on the way, since they
+// do not follow from the history; runs of other liquids have none.
 static void put_snapshots(struct artifact *artifact, const struct network *network,
                           const struct drying_history *history,
                           const struct drying_conditions *conditions)
@@ -92,7 +108,8 @@ static void put_snapshots(struct artifact *artifact, const struct network *netwo
     profiles_free(&profiles);
 }
 
-// Rows of a dataset are counted in int.
+// Rows of a dataset are counted in int, changes in 64 bits: a run of many small steps
+// (step_interval=0) may have more of them than fit.
 static void put_history(struct artifact *artifact, const struct drying_history *history)
 {
     const int n_step = history->n_step, n_event = history->n_event;
@@ -155,6 +172,8 @@ static void put_fluids(struct artifact *artifact,
                         given->property[FLUID_DIFFUSIVITY]);
 }
 
+// `model` tells in words what was computed, from the same conditions that the run had.
+// The artifact is opened only here, so a run that failed leaves no file.
 void write_drying(const struct network *network, const struct drying_history *history,
                   const struct invocation *invocation, const struct artifact *input,
                   const struct dry_parameters *parameters,

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The boundary layer in a drying artifact: datasets and lines of its description.
+//
+//     /boundary_layer  node, wall, area m2 (n_column);
+//                      links (n_link, 2), length m, width m, edge (n_link)
+//     /summary         boundary_layer_thickness m, boundary_layers
 #ifndef CRAQUELURE_WRITE_LAYER_H
 #define CRAQUELURE_WRITE_LAYER_H
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tetrahedra of the regular triangulation of grains and walls, each with its pore
-// [C 2.1].
+// [C 2.1]. A wall is a sphere of unlimited radius, so a cell has from one to four
+// grains among its corners. All lengths are in units (grains.h). Topology is decided by
+// exact predicates on the grid of grains.h, so equal input gives equal cells.
 #ifndef CRAQUELURE_FLOW_CELLS_H
 #define CRAQUELURE_FLOW_CELLS_H
 
@@ -17,7 +19,7 @@ struct pore_cell {
     int32_t pore;         // cells whose centres coincide are one pore
 };
 
-// It owns .cell.
+// It owns .cell. Cells of one pore stand for one unknown pressure: n_pore <= n.
 struct cells {
     int n, n_pore;
     struct pore_cell *cell;
@@ -45,7 +47,7 @@ static inline struct vector wall_normal(int wall)
     return normal;
 }
 
-// How far a point is inside a wall of the box, units.
+// How far a point is inside a wall of the box, units; below 0 beyond it.
 static inline double wall_distance(const struct grains *grains, struct vector at,
                                    int wall)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The boundary conditions of the flow, as the user gives them.
+// The boundary conditions of the flow, as the user gives them, and in the units of the
+// computation: pressures stay in Pa, fluxes become unit^3 Pa for a viscosity of 1.
 #ifndef CRAQUELURE_FLOW_CONDITIONS_H
 #define CRAQUELURE_FLOW_CONDITIONS_H
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The forces of the fluid on grains and walls [C 2.3].
+// The forces of the fluid on grains and walls [C 2.3]: its pressure on the sectors of
+// the facets [C 14], and the drag of what flows between them [C 18]. Moments are not
+// found.
 #ifndef CRAQUELURE_FLOW_FORCES_H
 #define CRAQUELURE_FLOW_FORCES_H
 
 #include "pressures.h"
 
-// In Pa unit^2: times the square of grains.unit in N.
+// In Pa unit^2: times the square of grains.unit in N. It owns .viscous and .pressure.
 struct forces {
     struct vector *viscous, *pressure; // (n_base) [C 18, 14]
     struct vector wall_viscous[WALL_COUNT], wall_pressure[WALL_COUNT];

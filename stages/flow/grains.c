@@ -6,8 +6,9 @@
 //
 //     unit = (box volume / grains)^(1/3),
 //     grid = the coarser of 2^-40 and 2^(exponent of the largest edge - 50),
-// so that 50 bits hold any place in the box. Copies are made along
-// one axis after the other, of all grains and copies there are by then.
+// so that 50 bits hold any place in the box. Copies are made along one axis after the
+// other, of all grains and copies there are by then. Weights are radii squared and are
+// not rounded: equal grains have equal weights already.
 #include "grains.h"
 
 #include "basics/memory.h"

@@ -8,6 +8,15 @@
 // viscosity of 1, drop the pressure drop and L the box along the flow,
 //     permeability = U L unit^2 / drop,   bed_permeability = permeability bed_share:
 // the bed is the part of the box that grains reach over, in series with free fluid.
+//
+// It reads a packing: positions, radii, the box, and /particles/velocity where it has
+// one. It writes flow.h5, or with write=forces the total force on every grain as a
+// forces artifact, which grows from 0 over `steps`, for dem-replay.
+//
+// Throats come before the conditions because these do not change them: the tensor
+// solves three times on the same throats. Velocities only give sources; grains stay
+// where they are. From find_cells to write all but permeabilities is in units of length
+// (grains.h) and for a viscosity of 1, with pressures in Pa.
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "basics/status.h"
@@ -22,6 +31,8 @@
 
 enum output_kind { OUTPUT_FLOW, OUTPUT_FORCES };
 
+// What the table reads into. The int members are places of choices in the table, and
+// are cast to enums of the same order (throats.h, sparse/linear_solver.h, here).
 struct flow_parameters {
     struct imposed imposed;
     int sides, conductance, facet_pieces, solver, output_kind;
@@ -116,7 +127,8 @@ static const struct stage stage = {
     .notes = "Pores are the cells of the regular triangulation of the grains, throats "
              "its facets. With write=forces the output is a forces artifact."};
 
-// Everything a packing makes, and the flow through it.
+// Everything a packing makes, and the flow through it. Members are filled from above
+// to below, and each owns its arrays.
 struct computation {
     struct packing packing;
     struct grains grains;
@@ -197,7 +209,8 @@ static enum status find_columns(struct computation *flow, const struct solving *
     return STATUS_OK;
 }
 
-// Pore stresses are averages of a Stokes flow between resting grains.
+// The whole flow, part by part. Pore stresses are averages of a Stokes flow between
+// resting grains: they are refused where something moves, before anything is solved.
 static enum status compute(const struct artifact *input,
                            const struct flow_parameters *parameters,
                            struct computation *flow, struct reason *reason)
@@ -248,7 +261,8 @@ static double permeability_of(const struct computation *flow,
            flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
 }
 
-// Share of the box along AXIS that the grains reach over. All of a box that repeats.
+// Share of the box along AXIS that the grains reach over. All of a box that repeats,
+// which has no free end. Parts of grains beyond a wall do not count.
 static double bed_share(const struct packing *packing, int axis)
 {
     const double lower = component(packing->lower, axis);

@@ -58,7 +58,8 @@ uint8_t *walls_of_pores(const struct cells *cells)
     return walls;
 }
 
-// The wall that imposes the pressure on a pore; -1: none.
+// The wall that imposes the pressure on a pore; -1: none. Of several the lower one in
+// the order of walls, so that a pore in an edge has one pressure.
 static int pressure_wall(const struct conditions *conditions, unsigned walls)
 {
     for (int wall = 0; wall < WALL_COUNT; wall++)
@@ -66,7 +67,8 @@ static int pressure_wall(const struct conditions *conditions, unsigned walls)
     return -1;
 }
 
-// The wall through which a flux enters a pore; -1: none.
+// The wall through which a flux enters a pore; -1: none. An imposed pressure goes
+// first: where the pressure is known no balance is solved, and a flux would be lost.
 static int flux_wall(const struct conditions *conditions, unsigned walls)
 {
     if (pressure_wall(conditions, walls) >= 0) return -1;
@@ -119,8 +121,8 @@ static bool nodes_of(const struct pressures *pressures, const struct throat *thr
     return node[0] != node[1];
 }
 
-// Starts from a uniform pressure, the smallest one imposed. If it is the only one, that
-// is the solution, and flows are exactly 0 instead of rounding.
+// Starts from a uniform pressure, of those imposed the one nearest to 0. If it is the
+// only one, that is the solution, and flows are exactly 0 instead of rounding.
 static void start_from_uniform(const struct conditions *conditions,
                                struct pressures *pressures)
 {
@@ -166,7 +168,9 @@ static void impose(struct balance *balance, const struct conditions *conditions,
 }
 
 // Pins one pore of every pocket. POCKET (n_node) becomes the root of each node's
-// pocket, -1 for nodes with a path to an imposed pressure.
+// pocket, -1 for nodes with a path to an imposed pressure. Flows into a pocket must sum
+// to 0, to rounding: else its balances contradict each other, and the pinned pore would
+// silently take up the rest.
 static enum status find_pockets(struct balance *balance, struct pressures *pressures,
                                 int32_t *pocket, struct reason *reason)
 {
@@ -205,6 +209,8 @@ static enum status find_pockets(struct balance *balance, struct pressures *press
     return status;
 }
 
+// The matrix has unknown nodes first, known ones behind them as its boundary; throats
+// that are closed, or inside one node, have no entry.
 static void arrange(struct balance *balance, const struct pressures *pressures)
 {
     const int n_node = pressures->n_node;
@@ -284,7 +290,9 @@ static void reorder(const struct balance *balance, struct pressures *pressures,
 }
 
 // Corrects X until the balances close, or rounding ends it. X, GIVEN and RESIDUAL are
-// in the order of the matrix.
+// in the order of the matrix. It aims at a tenth of the tolerance; once below the
+// tolerance, a round that does not halve the imbalance is the last. The throughput, to
+// which the imbalance is relative, is found again until it has settled.
 static enum status correct(const struct balance *balance, const struct solving *solving,
                            struct linear_solver *solver, const double *given,
                            struct compensated *x, double *residual,

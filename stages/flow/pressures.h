@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pressure in every pore, from the balances of the flow [C 6, 20].
+// The pressure in every pore, from the balances of the flow [C 6, 20]. The flow is slow
+// and viscous, so pressures are linear in what is imposed, and nothing has a history.
 #ifndef CRAQUELURE_FLOW_PRESSURES_H
 #define CRAQUELURE_FLOW_PRESSURES_H
 
@@ -23,7 +24,9 @@ struct solving {
     double tolerance; // on the imbalance
 };
 
-// The pressure is a periodic field plus the mean gradient times the position.
+// The pressure is a periodic field plus the mean gradient times the position. Values
+// are sums of two doubles: over a wide throat pressures differ by less than the last
+// digit of one. Read them by pressure_drop and pore_pressure.
 struct pressures {
     int n_node;                // pores behind one flux plate are one
     int32_t *node;             // (n_pore)

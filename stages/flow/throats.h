@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The throats between pores: their geometry and what they conduct [C 2.2.2].
+// The throats between pores: their geometry and what they conduct [C 2.2.2]. A throat
+// is a facet between two cells, with the double pyramid from it to their two centres.
+// Everything is in units (grains.h), conductances in unit^3 for a viscosity of 1.
 #ifndef CRAQUELURE_FLOW_THROATS_H
 #define CRAQUELURE_FLOW_THROATS_H
 
@@ -19,6 +21,8 @@ enum facet_pieces {
     PIECES_UNSIGNED // each grain's share is counted twice, as Yade does
 };
 
+// By hydraulic radius [C 8], effective radius [C 10], or the open section as in
+// tessellate.
 enum conductance { CONDUCTANCE_HYDRAULIC, CONDUCTANCE_EFFECTIVE, CONDUCTANCE_SECTION };
 
 // How the resistance of throats is computed [C 2.2.2].

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The flow as an artifact, or as the forces of one. Both begin with the packing.
 #ifndef CRAQUELURE_WRITE_FLOW_H
 #define CRAQUELURE_WRITE_FLOW_H
 

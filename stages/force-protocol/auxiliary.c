@@ -2,7 +2,8 @@
 // Grains, bonds and rows of the protocol are compacted in place. Grains that stay keep
 // their order; a bond with one that goes is dropped, and so are the force and the
 // liquid of a grain that goes. A place is read before it is written: new numbers are
-// never above the old.
+// never above the old. Without kinds in the packing there is nothing to drop, and the
+// arrays are left as they are; memory is not given back.
 #include "auxiliary.h"
 
 #include "basics/memory.h"

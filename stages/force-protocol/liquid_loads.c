@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The liquid in each throat at any time of the drying, and the loads it puts on
 // grains:
-//     load[LOAD_SUCTION]      = S suction,            S saturation, linear within a
-//     step load[LOAD_CONTACT_LINE] = r sigma sin(theta) (number of menisci)
-//     load[LOAD_EMPTINESS]    = 1 - S,
-//     load[LOAD_WEIGHT]       = rho g S V.
+//     load[LOAD_SUCTION]      = S suction                          Pa
+//     load[LOAD_CONTACT_LINE] = r sigma sin(theta) (its menisci)   N
+//     load[LOAD_EMPTINESS]    = 1 - S
+//     load[LOAD_WEIGHT]       = rho g S V                          N
+// with S the saturation of the throat, linear in time within a step of the drying.
 // The suction is uniform [K 5.3], of each cluster (the least entry pressure less rho g
 // z among its menisci), or interpolated from the pressure field of viscous liquid.
 // With K's uniform suction loads are continuous in time; clusters make them jump when
 // a throat empties, so the end of a step and the beginning of the next are told apart.
+//
+// `before` and `after` are S at the present step and the next; `share` is where between
+// them the time is. They are replayed from the changes of the drying, forwards only. A
+// step has a length of 0 where two events have one time: liquid_loads_to passes it.
 #include "liquid_loads.h"
 
 #include "basics/disjoint_sets.h"
@@ -111,6 +116,8 @@ static void find_cluster_suction(const struct liquid_loads *liquid)
 
 // --- the field of viscous liquid ---------------------------------------------------
 
+// The mean over the ends in liquid of what their pressure is below that of the gas. A
+// pressure of exactly 0 means gas, as the drying writes it.
 static double suction_at(const struct liquid_loads *liquid, const double *pressure,
                          int throat)
 {
@@ -127,7 +134,7 @@ static double suction_at(const struct liquid_loads *liquid, const double *pressu
     return radius > 0 ? liquid->law.meniscus / radius : liquid->law.uniform;
 }
 
-// Whether the throat has liquid at an end in the COUNT snapshots from FIRST on.
+// Whether the throat has liquid at an end in each of the COUNT snapshots from FIRST on.
 static bool is_wet(const struct liquid_loads *liquid, int first, int count, int throat)
 {
     const int32_t *node = liquid->network->throat_nodes[throat];
@@ -158,6 +165,8 @@ double field_error(const struct liquid_loads *liquid)
     return sum / count / liquid->law.uniform;
 }
 
+// The suction of every throat in every snapshot, found once: it is asked for at many
+// times.
 static double *field_of(const struct liquid_loads *liquid)
 {
     const struct liquid_record *record = liquid->record;
@@ -171,6 +180,8 @@ static double *field_of(const struct liquid_loads *liquid)
     return field;
 }
 
+// Linear between the snapshots around TIME; before the first and after the last one
+// that one's field.
 static void interpolate_field(const struct liquid_loads *liquid, double time)
 {
     const struct liquid_record *record = liquid->record;

@@ -12,6 +12,16 @@
 //     uniform      = meniscus / mean throat radius  Pa: of pressure=uniform
 //     contact_line = gamma sin(theta)               N/m, along the grain [K 3.14]
 //     weight       = gravity times liquid density   N/m3
+//
+// It reads a drying: its network, /history, /changes, the nodes that gas touches from
+// the beginning, with pressure=field the pressures of its snapshots, and the liquid. It
+// writes the packing without auxiliary grains, /time and /saturation (n_time), /force
+// (n_time, n_particle) in N, and with gravity /liquid_mass (n_time, n_particle) in kg.
+//
+// Why this order: what a throat does to a grain (its patches) depends on geometry alone
+// and is found once; what the liquid does (its loads) changes with time. So a force is
+// a short sum at each time. Auxiliary grains bound cells and must be there until all
+// forces are summed. The size of the result is checked before it is allocated.
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "auxiliary.h"
@@ -31,6 +41,8 @@
 
 enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 
+// What the table reads into; NAN: not given, and taken from the drying. The int members
+// are places of choices, cast to enums of the same order.
 struct force_parameters {
     double surface_tension, contact_angle, force_scale, largest_change, ring_volume,
         most_bytes, gravity;
@@ -323,7 +335,8 @@ static void put_summary(struct artifact *artifact, const struct process *process
                         artifact_get_number(input, "/summary/first_period_end_time"));
 }
 
-// In the order of the choices in the table.
+// The model in words. Texts are in the order of the choices in the table; a new choice
+// needs a text here, or the next one's is printed.
 static void describe(const struct force_parameters *parameters, const char *difference,
                      const struct pendular_rings *rings, char *text, size_t size)
 {

@@ -6,7 +6,7 @@
 
 #include "throat_loads.h"
 
-// Everything that determines the forces of one run.
+// Everything that determines the forces of one run. It owns nothing.
 struct process {
     const struct network *network;
     const struct liquid_record *record;
@@ -14,6 +14,8 @@ struct process {
     const struct throat_loads *loads;
 };
 
+// It owns its arrays. Row m of .force and .liquid is of time m: grain i is at
+// m n_particle + i.
 struct protocol {
     int n_time;
     double *time, *saturation; // (n_time) s, 1

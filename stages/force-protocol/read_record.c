@@ -3,6 +3,13 @@
 // gas touches from the beginning, and, for a field of suction, the pressures of the
 // snapshots. Exits 65 where the drying lacks them, with the parameter of `dry` that
 // records them.
+//
+//     steps and changes    artifact_get_drying
+//     exposed (n_node)     /boundary_layer/node, else nodes on /summary/open_walls
+//     snapshot_time (s)    /snapshots/time
+//     pressure (s, n_node) /snapshots/liquid_pressure, Pa less that of the gas
+// That rows are as many as they must be, and indices in range, the schema has checked
+// when the artifact was opened. Optional datasets are asked for here.
 #include "read_record.h"
 
 #include "basics/memory.h"

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The force on grain i is the sum over loads l and its patches k,
-//     force_i = scale * sum_(l, k) load_l(throat_k) pull_lk  (weight without the
-//     scale),
+//     force_i = scale * sum_(l, k) load_l(throat_k) pull_lk,   weight without scale,
 // always added in the same order, so that stepping gives the same bits as a sum from
 // scratch: a grain whose throats change is summed again as a whole, never corrected.
+//
+// A step of the drying changes few throats, so forces are followed from step to step:
+// throats with another load, then the grains that these act on, each once. Where loads
+// change of throats that the drying does not list (checks_all) all are looked at.
 #include "throat_loads.h"
 
 #include "basics/memory.h"
@@ -77,6 +80,8 @@ static void list_grains(struct force_steps *steps, int n_throat)
     free(next);
 }
 
+// Lists the grains of THROAT if any of its loads is another. Exact comparison: equal
+// loads give equal sums.
 static void update_throat(struct force_steps *steps, int throat)
 {
     double load[LOADS];

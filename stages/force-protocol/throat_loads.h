@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces on the grains from the loads of the throats: at one time, or followed from
-// step to step of the drying.
+// step to step of the drying. A patch says how a throat pulls a grain for a load of 1,
+// by geometry alone; liquid_loads.h says how large the load is. Both ways add in the
+// same order, so they give the same bits, for any number of threads.
 #ifndef CRAQUELURE_THROAT_LOADS_H
 #define CRAQUELURE_THROAT_LOADS_H
 
@@ -21,7 +23,9 @@ void throat_loads_free(struct throat_loads *loads);
 void forces_now(const struct throat_loads *loads, const struct liquid_loads *liquid,
                 struct vector *force);
 
-// The forces step by step; only of grains beside throats that change.
+// The forces step by step; only of grains beside throats that change. It owns its
+// arrays and its liquid, not the loads. `changed` and `former` tell what the last move
+// did, so that whoever follows need not compare all grains.
 struct force_steps {
     const struct throat_loads *loads;
     struct liquid_loads liquid;
@@ -43,8 +47,9 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
 void force_steps_free(struct force_steps *steps);
 
 // _to_end_of_step goes to the moment just before the next step, _advance to that step
-// itself; false: there is none.
-// Only where forces jump, STEPS.CHECKS_ALL, do the two differ.
+// itself; false: there is none. Only where forces jump, STEPS.CHECKS_ALL, do the two
+// differ; elsewhere _to_end_of_step must not be called: it would look at the throats
+// that changed when the step began, not at those that change until the next.
 void force_steps_to_end_of_step(struct force_steps *steps);
 bool force_steps_advance(struct force_steps *steps);
 

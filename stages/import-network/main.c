@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // import-network: a pore network that others made, or that inspect exported.
 //
-// It reads the JSON graph, or the node1, link1 and link2 files of statoil (node2 says
-// nothing that a network keeps), notes a digest of each for the provenance, and writes
-// a network. Files of other programs have no grains and faces.
+// In this order: read the JSON graph, from a file or standard input, or the node1,
+// link1 and link2 files of statoil, which have only a prefix in common and so cannot
+// come through a pipe (node2 says nothing that a network keeps); note a digest of each
+// file for the provenance; let the format's reader check and build the network
+// (formats/jsongraph.h, formats/statoil.h); write it. Files of other programs have no
+// grains and faces.
+//
+// A file that is wrong ends the stage with 65 and one line, with the file's name first.
 #include "artifacts/artifact.h"
 #include "artifacts/write_network.h"
 #include "basics/memory.h"
@@ -50,6 +55,7 @@ static struct bytes read_input(const char *path, const char *schema, json_t *inp
     return bytes;
 }
 
+// A key given twice is refused: jansson would keep the last and say nothing.
 static struct network import_jsongraph(const char *path, json_t *inputs)
 {
     const struct bytes bytes = read_input(path, "jsongraph", inputs);
@@ -68,6 +74,8 @@ static struct network import_jsongraph(const char *path, json_t *inputs)
     return network;
 }
 
+// One file of statoil, as a string: it ends at a null byte, so there must be none in
+// it. The caller frees it.
 static char *read_text(const char *prefix, int file, json_t *inputs)
 {
     char path[4096];
@@ -81,6 +89,7 @@ static char *read_text(const char *prefix, int file, json_t *inputs)
     return text;
 }
 
+// The reason begins with the ending of the file it is about, and so follows PREFIX.
 static struct network import_statoil(const char *prefix, json_t *inputs)
 {
     char *text[STATOIL_FILES] = {NULL};

@@ -9,7 +9,8 @@
 // maximum, SHA-256 of its values (little endian, in file order). The caller owns it.
 json_t *describe_artifact(const struct artifact *artifact);
 
-// One dataset as nested lists. Exits 65 when the artifact has none of that NAME.
+// One dataset as nested lists, as deep as its rank; NAME with or without its first
+// slash. Exits 65 when the artifact has none of that NAME. The caller owns it.
 json_t *dataset_json(const struct artifact *artifact, const char *name);
 
 #endif

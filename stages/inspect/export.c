@@ -2,6 +2,9 @@
 // A network for other programs: as a JSON graph on one line, ASCII only, with 17
 // digits, so that reading it gives the same doubles; or as the four text files of
 // statoil.
+//
+// A network in a box that repeats is refused (artifact_get_network): neither format has
+// a place for images.
 #include "export.h"
 
 #include "basics/status.h"

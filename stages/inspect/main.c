@@ -3,6 +3,12 @@
 // standard input if none is named. A JSON document describes itself and is printed as
 // it is. Of an artifact it writes the network, the series, one dataset or the
 // description, by the options, in this order of precedence.
+//
+// Only one of these is done: a network (--openpnm and --statoil go together), --xyz,
+// --vtk, --data, else the description; an option further behind is passed over.
+// Files are each written whole or not at all. Whether the input is JSON or HDF5 its
+// first bytes say, not its name. The artifact is checked whole before any of it is
+// printed.
 #include "artifacts/artifact.h"
 #include "artifacts/document.h"
 #include "basics/status.h"

@@ -8,6 +8,15 @@
 // Of forces, rows frame (n_time - 1) / (n_frame - 1) are taken. In a response positions
 // are those before drying plus displacements, and a contact is whole until the time of
 // its crack has come.
+//
+//     kind      points              lines              arrays
+//     drying    nodes               throats            saturation, radius, kind
+//     forces    grains              none               force, radius
+//     response  grains, moved       contacts           displacement, force, radius;
+//                                                      contact_force, crack, and of
+//                                                      bridges volume, force, gap
+//     motion    grains, in the box  contacts of each   velocity, spin, radius, group;
+//                                   snapshot           force
 #include "series.h"
 
 #include "basics/memory.h"
@@ -37,6 +46,7 @@ static void add_frame(struct series *series, double time, const struct vtu_grid 
     write_vtu(frame->file, grid);
 }
 
+// VTK arrays here are of doubles. The caller frees them.
 static double *as_doubles(const uint8_t *values, int count)
 {
     double *doubles = NEW_ARRAY(double, count);
@@ -52,7 +62,8 @@ static double frame_saturation(int frame, int n_frame)
 }
 
 // Liquid in the throats. A step may pass several levels at once: then one frame stands
-// for all of them.
+// for all of them. LIQUID is the state that apply_changes brings from step to step; the
+// grid points to it, so each frame shows the present one.
 static void drying_series(const struct artifact *artifact, struct series *series,
                           int n_frame)
 {
@@ -123,6 +134,7 @@ struct crack_view {
     double *state; // (n_contact)
 };
 
+// Reads what the view needs; the caller frees it with crack_view_free.
 static struct crack_view crack_view_of(const struct artifact *artifact)
 {
     struct crack_view view = {0};
@@ -323,6 +335,7 @@ static void motion_series(const struct artifact *artifact, struct series *series
     packing_free(&packing);
 }
 
+// The .pvd comes last: whoever finds it finds all its frames.
 void write_series(const struct artifact *artifact, const char *prefix, int n_frame)
 {
     struct series series = {.prefix = prefix};

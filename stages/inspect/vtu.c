@@ -3,6 +3,12 @@
 // that a frame is never half there. Numbers have nine digits, enough to draw; read
 // artifacts for more. The .pvd names frames relative to itself: files can be moved
 // together.
+//
+//     VTKFile / UnstructuredGrid / Piece
+//         Points      one DataArray (n_point, 3)
+//         Cells       connectivity, offsets (ends, without the 0), types
+//         PointData   a DataArray each of grid.points
+//         CellData    likewise of grid.cells
 #include "vtu.h"
 
 #include "basics/file.h"

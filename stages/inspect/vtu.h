@@ -7,7 +7,8 @@
 
 #include <stdint.h>
 
-// One array on points or cells: numbers (COMPONENTS 1 or 3).
+// One array on points or cells: numbers (COMPONENTS 1 or 3). NAME is what ParaView
+// shows; the caller owns all.
 struct vtu_array {
     const char *name;
     const double *value; // (n * components)

@@ -2,6 +2,15 @@
 // Extended XYZ, as OVITO and ASE read it: for each frame the number of grains, a line
 // of keys (Lattice, Origin, pbc, Time, Properties), then a row a grain. Nine digits:
 // coordinates to 1e-9 of the box, without making files twice as large.
+//
+//     n
+//     Lattice="a 0 0 0 b 0 0 0 c" Origin="x y z" pbc="T F F" Time=t Properties=...
+//     id x y z radius [displacement 3] [force 3] [broken_bonds]      n rows
+//
+// Which columns there are, Properties says: all frames of one file have the same.
+// Places are those before drying plus displacement, where that is known. Time is left
+// out where there is none. All frames are made in memory, so the file is whole or not
+// there.
 #include "xyz.h"
 
 #include "basics/file.h"
@@ -54,6 +63,8 @@ static void put_frame(FILE *stream, const struct packing *packing,
     }
 }
 
+// Rows m = k (n_time - 1)/(n_frame - 1): the first and the last are always there. Of 64
+// bits, as the product may be large.
 static void put_forces(FILE *stream, const struct artifact *artifact,
                        const struct packing *packing, int n_frame)
 {
@@ -80,6 +91,7 @@ static void count_broken(const struct packing *packing, const uint8_t *intact,
             broken[packing->bond[b][side]] += !intact[b];
 }
 
+// /snapshots/... have a block of n_particle (n_bond) rows a snapshot.
 static void put_snapshots(FILE *stream, const struct artifact *artifact,
                           const struct packing *packing)
 {
@@ -103,6 +115,8 @@ static void put_snapshots(FILE *stream, const struct artifact *artifact,
     free(broken);
 }
 
+// What is neither a response nor forces has one frame, of its grains as they lie; also
+// a motion, whose snapshots are not taken.
 void write_xyz(const struct artifact *artifact, const char *path, int n_frame)
 {
     if (!schema_dataset(artifact->schema, "/particles/position"))

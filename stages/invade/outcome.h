@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The results of an invasion: throats, nodes, and the liquid that stays.
+// The results of an invasion: throats, nodes, and the liquid that stays. The invasion
+// (network/invasion.h) only says what gas enters in which order; volumes and pressures
+// come in here.
 #ifndef CRAQUELURE_OUTCOME_H
 #define CRAQUELURE_OUTCOME_H
 
@@ -12,7 +14,7 @@ enum held_by {
 };
 
 // Events count from 1; 0: gas from the start; -1: liquid in the end. Where gas enters
-// nodes, a throat empties with the first of its two.
+// nodes, a throat empties with the first of its two. It owns its arrays.
 struct outcome {
     enum held_by held_by;
     int32_t *throat_event; // (n_throat)

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// merge-nodes: short throats removed from a pore network [K 3.3.7].
+// merge-nodes: short throats removed from a pore network [K 3.3.7]. Reads a network,
+// also one of a box that repeats, and writes it with fewer nodes and throats.
 //
-// In this order: read the network and its periodic images, merge the nodes of throats
-// shorter than the threshold, shortest first (merge.h), see that images are still near
-// enough to be numbered, write. What was merged, fused and kept is counted in `model`.
+// In this order: read; count what there is, for the report (report.h); turn cylinders
+// into volumes, if these are to be conserved; merge the nodes of throats shorter than
+// the threshold, shortest first (merge.h); count again and write the report; see that
+// images are still near enough to be numbered; write. Counting comes before the volumes
+// are given, which changes no number of it. What was merged, fused and kept is counted
+// in `model`.
+//
+// `threshold` has four units, by `measure`: mean grain radii, mean throat lengths, m,
+// or a share of the throats, which is the only one with an upper limit (1) and is
+// checked here.
 #include "artifacts/artifact.h"
 #include "artifacts/document.h"
 #include "artifacts/write_network.h"
@@ -50,7 +58,7 @@ static const struct stage stage = {
     .parameters = table,
     .reports = "coordination, lengths and radii before and after, as JSON"};
 
-// Cylinders become volumes.
+// Cylinders become volumes, m3: then merging passes them on, and their sum stays.
 static void give_volumes(struct network *network)
 {
     if (network->throat_volume) return;
@@ -60,6 +68,7 @@ static void give_volumes(struct network *network)
     network->throat_volume = volume;
 }
 
+// With a census before and after where PATH, that of the report, is not NULL.
 static void merge(struct network *network, const struct merge_parameters *parameters,
                   const char *path, struct merge_report *report)
 {
@@ -75,7 +84,9 @@ static void merge(struct network *network, const struct merge_parameters *parame
     census_free(&after);
 }
 
-// Refuses nodes that meet across more periodic images than an artifact can store.
+// Refuses nodes that meet across more periodic images than an artifact can store: a
+// merged node lies in one image of all it was made from, and in a narrow box the others
+// may then be far (image.h). Exits 65.
 static void check_images(const struct network *network, const char *path)
 {
     bool far = false;

@@ -29,9 +29,10 @@ struct merge_report {
 // A merged node lies at the mean of the nodes it was made from, those on most walls
 // alone counting, and exactly on all their walls. Throats that become parallel (between
 // the same two nodes) are one: they were the same opening, seen twice; the wider radius
-// stays, what they conduct adds up. Lengths follow the nodes; radii are those from before. Faces stay closed
-// loops; one left with fewer than three nodes is gone. Where the box repeats, throats
-// between the same nodes are parallel only if they lead to the same image.
+// stays, what they conduct adds up. Lengths follow the nodes; radii are those from
+// before. Faces stay closed loops; one left with fewer than three nodes is gone. Where
+// the box repeats, throats between the same nodes are parallel only if they lead to the
+// same image.
 //
 // Where throats have volumes, their sum stays: those of parallel throats add up, and
 // that of a throat merged away goes to the throats at the merged node, in proportion to

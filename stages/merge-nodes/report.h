@@ -16,12 +16,18 @@ struct census {
     double volume;                     // of all throats, m3
 };
 
-// The caller frees it with census_free.
+// O(n_node + n_throat). The caller frees it with census_free; NETWORK may have changed
+// by then.
 struct census take_census(const struct network *network);
 void census_free(struct census *census);
 
-// {"merged":…, "before":{…}, "after":{…}}; the classes of length and of radius are the
-// same before and after; lengths in m. The caller owns it.
+// {"merged", "fused", "kept": numbers of throats as in merge.h, "lost_volume": m3,
+// "before": {…}, "after": {…}}, with in each of the two
+//     nodes, throats, volume (m3),
+//     coordination {mean, nodes: [of 0, 1, 2, … throats]},
+//     length and radius {mean, standard_deviation, middle: [m], throats: [numbers]}.
+// The classes of length and of radius are the same before and after. The caller owns
+// it.
 json_t *merging_json(const struct merge_report *report, const struct census *before,
                      const struct census *after);
 

@@ -7,6 +7,10 @@
 // Volumes are exact since a cut-out lies wholly inside (make_domain.c):
 //     box x y z,  cylinder and ring pi (R^2 - inner^2) z,  sphere (4/3) pi R^3,
 // less the same of what is cut out.
+//
+// Containment is to domain_rounding, so that a grain that was put in touch with a wall
+// counts as inside; random points keep their whole radius from walls and cut-out.
+// Periodic axes have no wall, but a cut-out and a round wall do not repeat with them.
 #include "domain.h"
 
 #include <float.h>

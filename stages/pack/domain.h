@@ -10,7 +10,8 @@
 #include <gsl/gsl_rng.h>
 #include <stdbool.h>
 
-// What the walls enclose, and what is cut out of it.
+// What the walls enclose, and what is cut out of it. In the order of the choices of
+// domain.shape and domain.cut.shape in the table.
 enum domain_shape { DOMAIN_BOX, DOMAIN_CYLINDER, DOMAIN_RING, DOMAIN_SPHERE };
 enum domain_cut { CUT_NONE, CUT_BOX, CUT_CYLINDER, CUT_SPHERE };
 
@@ -34,7 +35,9 @@ struct domain_parameters {
 // Cylinders and rings stand along z, from lower.z to upper.z. In two dimensions centres
 // lie in the plane y = middle, the domain is one largest diameter thick, and a sphere
 // is a disc of that thickness. What the methods work with, complete: made by
-// domain_init or domain_around, and changed by methods whose box moves.
+// domain_init or domain_around, for an import by make_import, and changed by methods
+// whose box moves. A value: nothing to free. Members that a shape does not need are
+// not looked at.
 struct domain {
     int dimensions;              // 2 or 3
     enum domain_shape shape;     // of its outer walls
@@ -65,8 +68,7 @@ enum status domain_around(const struct domain_parameters *parameters, int dimens
 // the largest coordinate.
 double domain_rounding(const struct domain *domain);
 
-// Distance from the z axis.
-// Distance of the point (X, Y) from the z axis, or of any two legs.
+// The root of the sum of squares of two legs: the distance of (X, Y) from the z axis.
 static inline double across(double x, double y)
 {
     return sqrt(x * x + y * y);
@@ -84,7 +86,9 @@ void domain_stretch(struct domain *box, double factor);
 // the box repeats there is no wall.
 bool domain_holds(const struct domain *domain, struct vector centre, double radius);
 
-// The bodies whose surfaces are its walls, and how many; a box without a cut has none.
+// Writes the bodies whose surfaces are its walls to BODY, the outer one first, and
+// returns how many; a box without a cut has none. A ring is one cylinder around the
+// grains and one that they lie around. For the artifact and the stages behind.
 int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES]);
 
 // A point evenly distributed where a grain of this radius fits wholly. False when the

@@ -2,6 +2,11 @@
 // Grains of INPUT as they are: read, scaled to metres, and given a box. The box of the
 // file holds unless pack.lower or pack.upper replace a side; only a file without a box
 // takes pack.periodic. The domain is that box, with nothing cut out.
+//
+// In this order: read_grains tells the format by its content, and puts walls where the
+// grains end if the file has no box; convert_grains makes metres of units and radii of
+// diameters; apply_box replaces sides. pack.lower and pack.upper come last because they
+// are metres already and must not be scaled.
 #include "import.h"
 
 #include "artifacts/read_grains.h"

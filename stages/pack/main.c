@@ -5,6 +5,16 @@
 // contacts; the check of the packing; bonds; the extra layer, which comes after the
 // bonds because it has none; then the artifact and the report. Contacts are searched
 // again after the layer, so that the measures of contacts count it.
+//
+// INPUT (text, a LAMMPS dump or a packing.h5) is the packing itself with import, and
+// where moving grains begin with the methods that move them; no other method takes one.
+// A slab is cut before contacts are searched: what is left of the grains has other
+// numbers, and its bonds are made anew. The packing artifact has grains, box, bonds,
+// the walls of the domain as bodies, and /summary and /structure (report.c); --report
+// writes these two as JSON.
+//
+// All that is random follows from `seed`. Exits 65 for parameters or grains that cannot
+// be, 3 for a method that did not get where it should; nothing is written then.
 #include "artifacts/artifact.h"
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
@@ -111,7 +121,9 @@ static const char *model_text(const struct reached *reached,
            "history\nno bonds while they moved\n";
 }
 
-// Refuses a packing that is impossible, and warns of one that is hardly meant.
+// Refuses a packing that is impossible, and warns of one that is hardly meant. Before
+// bonds and layer are made: a wrong unit or a diameter for a radius should be told
+// first. Notes, the mildest findings, are not told here.
 static void look_at(const struct packing *packing, const struct contacts *contacts,
                     const struct invocation *invocation,
                     const struct pack_parameters *parameters)
@@ -161,6 +173,8 @@ static void write_packing(const struct packing *packing, const struct domain *do
     report_free(&entry);
 }
 
+// With bonds=keep those of INPUT stay, if no grain has moved and no slab was cut. No
+// touching pair at all is told: nothing could crack.
 static void make_bonds(struct packing *packing, const struct contacts *contacts,
                        const struct pack_parameters *parameters, bool quiet)
 {
@@ -181,7 +195,8 @@ static void take_slab(const struct pack_parameters *parameters, struct domain *d
     if (status) die(status, "%s", reason.text);
 }
 
-// The domain grows with the box, so that the porosity counts the layer.
+// The domain grows with the box, so that the porosity counts the layer. The layer has
+// no bonds: it only gives the boundary layer its nodes.
 static void make_layer(struct domain *domain, int wall, struct packing *packing)
 {
     struct reason reason;

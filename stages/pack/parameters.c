@@ -2,6 +2,22 @@
 // The parameters of pack as one table: names, units, defaults, ranges and texts. Rules
 // that relate parameters to each other are checked where they are used (make_domain.c,
 // methods.c, sizes.c, check_moved.c), with the key in the reason.
+//
+// Rows in this order: the method and how many grains; their sizes; the box and the
+// domain in it; the end that moving grains are to reach, and their contacts; what some
+// methods or all of them do afterwards (trials, voids, slab, extra layer); how INPUT is
+// read; the check and the bonds.
+//
+// null becomes NAN, of `count` 0. What stands in for it depends on the method: the edge
+// of a box follows from a count, or a count from a box, and the stiffness from the
+// overlap wanted. So no number could stand here.
+//
+// Traps: a choice is stored as its place in .choices and cast to an enum of the same
+// order: method, sizes.distribution and .by, domain.shape and .cut.shape, target,
+// check, bonds, and extra_side, which becomes a number of a wall. Methods up to
+// honeycomb are lattices. `target_value` has the unit of its target, share, contacts or
+// Pa, though the table can say only 1. Threads and the keeper of checkpoints are
+// members of `dynamics` too, but come from the command line.
 #include "parameters.h"
 
 #define AT(member) offsetof(struct pack_parameters, member)

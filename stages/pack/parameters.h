@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The parameters of pack. NAN, or 0 for counts: not given. What stands in for it
-// depends on the method (methods.c).
+// depends on the method (methods.c). The table checks each parameter for itself; that
+// they agree with each other is checked by the functions that use them.
 #ifndef CRAQUELURE_PACK_PARAMETERS_H
 #define CRAQUELURE_PACK_PARAMETERS_H
 
@@ -12,7 +13,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-// In the order of the choices in the table.
+// In the order of the choices in the table. The first six are lattices, the four of
+// moving grains may begin from those of INPUT.
 enum method {
     METHOD_SQUARE, // and the next five: lattices of touching grains (lattice_packing)
     METHOD_CUBIC,
@@ -58,6 +60,8 @@ struct pack_parameters {
     bool import_diameters; // INPUT has diameters in place of radii
 };
 
+// Fills a struct pack_parameters but for .dynamics.threads and .dynamics.keeper, which
+// main sets.
 extern const struct parameter pack_table[];
 
 #endif

@@ -15,6 +15,7 @@ struct arrays {
     json_t *list; // [{"name", "count", "planes", "delta", "float"}, ...] in that order
 };
 
+// An empty one, for the caller to free with arrays_free.
 struct arrays arrays_init(void);
 void arrays_free(struct arrays *arrays);
 

@@ -5,6 +5,17 @@
 //
 // Which artifact says what: cracks the response, rates and saturations the drying,
 // suction the forces, pieces and shrinkage crackstats.
+//
+//     first crack       /cracks of the response, row 0; they are in the order of time
+//     modes             /cracks/mode: 0 tension, 1 shear
+//     rates             /history/rate of the drying at the rows of the course; of its
+//                       /summary first_period_end_time and _saturation, and
+//                       breakthrough_saturation
+//     open sides        /summary/open_walls of the drying, bits
+//     forces            the largest load (body.c), /summary/capillary_pressure of the
+//                       forces, the largest of /snapshots/contact_force of the response
+//     pieces            mean.fragments, .clusters, .shrinkage of crackstats of this run
+//     makeup            the packing and network themselves
 #include "facts.h"
 
 #include "html.h"
@@ -23,6 +34,7 @@ static double number_in(const json_t *json, const char *const *path)
 }
 #define IN(json, ...) number_in(json, (const char *const[]){__VA_ARGS__, NULL})
 
+// NAN where there is no such artifact, or it does not say. NAME is a whole path.
 static double summary_of(const struct run *run, enum kind kind, const char *name)
 {
     const struct artifact *artifact = run->of[kind];
@@ -31,6 +43,7 @@ static double summary_of(const struct run *run, enum kind kind, const char *name
                : NAN;
 }
 
+// COUNT[0] in tension, [1] in shear.
 static void count_modes(const struct run *run, int count[2])
 {
     count[0] = count[1] = 0;
@@ -55,7 +68,8 @@ static void say_modes(FILE *page, const struct run *run)
                  mode[!more]);
 }
 
-// An interval may reach below 0, a count cannot.
+// An interval may reach below 0, a count cannot. Of the crackstats of several runs;
+// nothing where it has no interval.
 static void say_repeated(FILE *page, const json_t *repeated)
 {
     const double runs = IN(repeated, "runs"),
@@ -90,6 +104,8 @@ static void say_cracks(FILE *page, const struct run *run)
              run->crack_saturation[0], run->crack_saturation[(n - 1) / 2]);
 }
 
+// The last artifact of the chain gives the sentence: cracks, else the drying, else the
+// body.
 void put_headline(FILE *page, const struct run *run, const struct course *course)
 {
     char time[40];
@@ -195,6 +211,7 @@ int row_of_half_rate(const struct course *course)
     return course->rate && row < course->n_row ? row : -1;
 }
 
+// Only a drying has rates. Its end is the last row of the course.
 static void put_rates(FILE *page, const struct run *run, const struct course *course)
 {
     if (!course->rate || !course->n_row) return;
@@ -230,6 +247,7 @@ static const char *push_or_pull(const struct run *run, const int32_t pair[2],
     return dot(force, apart) > 0 ? "presses" : "pulls at";
 }
 
+// The button leads to the first of the two grains.
 static void say_contact(FILE *page, const struct run *run, const struct course *course,
                         const int32_t pair[2], struct vector force, double when)
 {
@@ -280,6 +298,7 @@ static void put_open_sides(FILE *page, const struct run *run)
     if (*text) put_fact(page, nowhere, "Open to the air", "%s", text);
 }
 
+// HEAVIEST and its time come from put_body, which saw every load.
 static void put_forces(FILE *page, const struct run *run, const struct course *course,
                        const struct shown_body *body)
 {
@@ -297,6 +316,7 @@ static void put_forces(FILE *page, const struct run *run, const struct course *c
     put_largest_contact(page, run, course);
 }
 
+// Each only where crackstats says it: it is the one that counts them.
 static void put_pieces(FILE *page, const struct run *run)
 {
     const double pieces = counted_mean(run, "fragments", "count");
@@ -334,6 +354,7 @@ void put_makeup(FILE *page, const struct run *run)
                  run->network.n_throat, run->network.n_node);
 }
 
+// The order is that in which people ask: cracks, drying, forces, pieces, the body.
 void put_facts(FILE *page, const struct run *run, const struct course *course,
                const struct shown_body *body)
 {

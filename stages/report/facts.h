@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What happened in a run, in sentences and numbers. All write HTML to PAGE, escaped by
-// html.h. Numbers have SI units with a prefix.
+// html.h. Numbers have SI units with a prefix. What an artifact does not say is left
+// out; nothing here changes RUN.
 #ifndef CRAQUELURE_REPORT_FACTS_H
 #define CRAQUELURE_REPORT_FACTS_H
 
@@ -20,7 +21,7 @@ extern const struct where nowhere;
 void put_fact(FILE *page, struct where where, const char *term, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-// Grains, bonds, pores.
+// Grains, with their diameters, and bonds; nodes and throats where there is a network.
 void put_makeup(FILE *page, const struct run *run);
 
 // One sentence that says what came out. Cracks if there is a response, else the drying,

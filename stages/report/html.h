@@ -14,7 +14,8 @@ void put_text(FILE *page, const char *text);
 void put_line(FILE *page, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-// TEXT as text, between two pieces of markup.
+// TEXT as text, between two pieces of markup, BEFORE and AFTER, which are written as
+// they are.
 void put_cell(FILE *page, const char *before, const char *text, const char *after);
 
 // JSON that may stand in a script element: no "<" in it. Compact, ASCII, keys sorted.

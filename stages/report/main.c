@@ -45,7 +45,8 @@ static const struct stage stage = {
              "opens in any\nrecent browser, with or without WebGL.",
     .writes_page = true};
 
-// So many forces make a megabyte and a half. A motion is all in its moments.
+// So many forces make a megabyte and a half. A motion is all in its moments. Three
+// bytes a grain and moment, before they are packed.
 static int moments_for(const struct run *run, int64_t wanted)
 {
     const int64_t most = 500000 / (run->packing.n_particle + 1) + 2;

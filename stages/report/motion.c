@@ -2,6 +2,14 @@
 // Snapshots as the page has them: places of each grain one moment after the other, as
 // differences; contacts of each moment as tubes between centres, or from a centre to
 // the point of a wall, in 255ths of the largest force at any moment.
+//
+//     moment.x, .y, .z          (n_particle, n_moment) steps of the grid, differences
+//     grain.group, .material    (n_particle) where any is not 0
+//     chain.count               (n_moment) contacts shown at each
+//     chain.first, .second      (sum of count) grains; second = n_particle: a wall
+//     chain.force               (sum of count) 1 to 255
+//     chain.x, .y, .z           (those with walls) the contact points, in their order
+//     TITLE.NAME.K              (n_row) line K of a chart, as floats
 #include "motion.h"
 
 #include "basics/memory.h"
@@ -35,7 +43,8 @@ static void put_places(struct arrays *arrays, const struct run *run,
     free(value);
 }
 
-// Nothing where all numbers are 0: there is nothing to colour then.
+// Nothing where all numbers are 0: there is nothing to colour then. NUMBER is of 8
+// bits. Returns what the script needs to colour by it, or NULL.
 static json_t *put_numbers(struct arrays *arrays, const struct run *run,
                            const char *dataset, const char *array, const char *label)
 {
@@ -64,7 +73,8 @@ struct contacts {
 };
 
 // The rows of snapshot s are offset[s] to offset[s + 1] - 1. They must add up, because
-// an artifact may come from elsewhere.
+// an artifact may come from elsewhere. The caller frees it with contacts_free.
+// /contacts/overlap is read for its number of rows alone.
 static struct contacts contacts_of(const struct run *run)
 {
     struct contacts contacts = {
@@ -216,6 +226,7 @@ static const struct {
      "",
      {{"/history/largest_overlap", 1, 0, ""}}}};
 
+// Lines without a dataset in this motion are left out; the chart is made in any case.
 static json_t *put_chart(struct arrays *arrays, const struct run *run,
                          const struct course *course, const char *title,
                          const char *label, const char *unit, const struct line *line,
@@ -292,7 +303,7 @@ void put_motion_headline(FILE *page, const struct run *run)
         put_line(page, " %d of %d bonds broke.", run->n_crack, run->packing.n_bond);
 }
 
-// The last number of a row of the history.
+// The last number of a row of the history. NAN where the history has no row.
 static double at_end(const struct run *run, const char *name)
 {
     int n;
@@ -302,6 +313,7 @@ static double at_end(const struct run *run, const char *name)
     return last;
 }
 
+// The largest number and its row, WHEN; 0 and row 0 where none is above 0.
 static double peak(const struct run *run, const char *name, int *when)
 {
     int n;

@@ -13,7 +13,9 @@
 json_t *put_motion(struct arrays *arrays, const struct run *run,
                    const struct course *course, const struct shown_body *body);
 
-// How many grains moved for how long; and a list of facts, each with its moment.
+// How many grains moved for how long, and how many bonds broke; and a list of facts,
+// with its moment where it has one: the fastest grain, the most energy, the largest
+// overlap, the first crack, the balance of energy. RUN must have a motion.
 void put_motion_headline(FILE *page, const struct run *run);
 void put_motion_facts(FILE *page, const struct run *run, const struct course *course,
                       const struct shown_body *body);

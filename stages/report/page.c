@@ -6,6 +6,10 @@
 // The page allows itself no network: its content security policy names the style and
 // the script by the SHA-256 of their bytes, and allows nothing from elsewhere. So a
 // text that slipped through the escaping of html.c could still not run.
+//
+// What the script reads are two elements: `meta`, JSON with names, sizes and scales of
+// arrays (put_meta), and `data`, all arrays as compressed text (arrays.c). The rest of
+// the page is there without any script.
 #include "page.h"
 
 #include "basics/file.h"
@@ -146,7 +150,8 @@ static void put_version(FILE *page, const struct contents *contents)
 // ---- what the script reads ----------------------------------------------------------
 
 // Saturation in slices at some levels, with the key of each; null where the drying has
-// none.
+// none. {"depth": [n_slice], "levels": [{"key", "saturation", "slices": [n_slice]},
+// ...]}
 static json_t *profiles_of(const struct contents *contents)
 {
     const struct artifact *drying = contents->run->of[DRYING];
@@ -175,7 +180,8 @@ static json_t *profiles_of(const struct contents *contents)
     return json_pack("{s:o,s:o}", "depth", depths, "levels", levels);
 }
 
-// Of the smaller grain's; what a bond with another says is drawn as half.
+// Radius of a bond over that of its smaller grain, from the parameters of the replay;
+// 0.5 where there is no replay or it does not say.
 static double bond_radius(const struct run *run)
 {
     char *text =
@@ -188,7 +194,8 @@ static double bond_radius(const struct run *run)
     return share > 0 && share <= 1 ? share : 0.5;
 }
 
-// gamma cos(theta), N/m: the page makes suctions of it, 2 gamma cos(theta) / r.
+// gamma cos(theta), N/m: the page makes suctions of it, 2 gamma cos(theta) / r. 0 where
+// the drying does not know its liquid.
 static double tension_of(const struct run *run)
 {
     const struct artifact *drying = run->of[DRYING];
@@ -210,7 +217,8 @@ static json_t *files_of(const struct run *run)
     return files;
 }
 
-// All that is not an array: bounds, scales, names, how many rows.
+// All that is not an array: bounds, scales, names, how many rows. "shown" is left out
+// where it is NULL, of a drying.
 static void put_meta(FILE *page, const struct contents *contents)
 {
     const struct run *run = contents->run;
@@ -303,6 +311,7 @@ static void put_place(FILE *page, const char *name, size_t length,
     die(STATUS_INTERNAL, "page.html: %.*s: no such place", (int)length, name);
 }
 
+// The templates are our own: each {{ has its }}.
 char *page_of(const struct contents *contents, size_t *size)
 {
     char *text = NULL;

@@ -20,7 +20,7 @@ struct contents {
 };
 
 // The page as text of *SIZE bytes; the caller frees it. A terminating 0 follows the
-// *SIZE bytes.
+// *SIZE bytes. Equal contents give equal bytes: there is no date in it.
 char *page_of(const struct contents *contents, size_t *size);
 
 #endif

@@ -17,10 +17,12 @@ void put_modelled(FILE *page, const struct run *run);
 json_t *scene_of(const struct run *run);
 void put_scene(FILE *page, const struct run *run);
 
-// Command lines that make the run again from that scene.
+// Command lines that make the run again from that scene, one a line, with the names of
+// files that `make run` gives.
 void put_commands(FILE *page, const struct run *run);
 
-// Rows of a table: artifact, program, digest.
+// Rows of a table: artifact, program, digest; in the order in which artifacts were
+// read.
 void put_sources(FILE *page, const struct run *run);
 
 #endif

@@ -8,9 +8,11 @@
 
 #include <jansson.h>
 
+// The chain of a drying in its order: each is made from the one before.
 enum kind { PACKING, NETWORK, DRYING, FORCES, RESPONSE, KINDS };
 
-// It owns all of it; close_run frees it. Times in s, forces in N.
+// It owns all of it; close_run frees it. Times in s, forces in N. Rows are those of the
+// artifacts; cracks are in the order of time.
 struct run {
     struct artifact *of[KINDS];    // NULL: not there
     struct artifact *tessellation; // a network that no throats were merged in

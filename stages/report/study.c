@@ -10,6 +10,14 @@
 // Means are over the runs of a group that have a number: a run without cracks has no
 // saturation at the first one. p-values are of each column by itself; with twelve
 // columns one in twenty is below 0.05 by chance.
+//
+//     0     bonds                    of the packing
+//     1-6   cracks of the response   all, by mode, %; saturation at first and half
+//     7, 8  the course (course.h)    saturation at half the first rate; s until its end
+//     9-11  crackstats of the run    fragments: count, largest; shrinkage, %
+//
+// A number that a run does not have is NAN: it is left out of means, and a column that
+// no run has is not shown.
 #include "study.h"
 
 #include "basics/memory.h"
@@ -74,6 +82,8 @@ static void flatten(json_t *flat, const char *prefix, json_t *value)
     }
 }
 
+// Cracks are in the order of time, so row (n - 1) / 2 is when half of them had opened.
+// Without cracks the saturations stay NAN.
 static void read_cracks_of(double value[COLUMNS], const struct run *run)
 {
     int count[2] = {0, 0};
@@ -89,7 +99,8 @@ static void read_cracks_of(double value[COLUMNS], const struct run *run)
     value[6] = run->crack_saturation[(n - 1) / 2];
 }
 
-// Columns in the order of column_name.
+// Columns in the order of column_name. The course has up to 20000 rows, so that the
+// moment of half the rate is hardly blurred by their choice.
 static void read_values(double value[COLUMNS], const struct run *run)
 {
     for (int c = 0; c < COLUMNS; c++)
@@ -126,6 +137,7 @@ static struct row row_of(const char *path, const char *output)
 
 // ---- what differs -------------------------------------------------------------------
 
+// By the end of the key, as stages name them alike.
 static bool is_seed(const char *key)
 {
     const size_t n = strlen(key);
@@ -143,6 +155,7 @@ static bool differs(const struct study *study, const char *key)
     return false;
 }
 
+// Over all keys that any scene has. O(runs keys).
 static void find_differences(struct study *study)
 {
     json_t *all = json_object();
@@ -231,6 +244,7 @@ static void shorten_names(struct study *study)
     }
 }
 
+// Names and groups need all rows, so they come after the reading.
 struct study *study_of(const char *const *paths, int n, const char *output)
 {
     char **folders = run_folders(paths, n, &n);
@@ -278,6 +292,7 @@ static struct sample sample_of(const struct study *study, int column, int group)
     return (struct sample){value, n};
 }
 
+// A column is known when one run has it.
 static bool is_known(const struct study *study, int column)
 {
     const struct sample all = sample_of(study, column, -1);
@@ -296,6 +311,7 @@ static bool scatters(const struct study *study, int column)
     return does;
 }
 
+// Runs that differ in seeds at most have an empty name.
 static const char *group_of(const struct study *study, int group)
 {
     const char *name =
@@ -305,7 +321,8 @@ static const char *group_of(const struct study *study, int group)
 
 // ---- the page -----------------------------------------------------------------------
 
-// How many bonds broke in GROUP, on average.
+// How many bonds broke in GROUP, on average. The interval ends at 0: a count cannot be
+// less.
 static void say_broken(FILE *page, const struct study *study, int group)
 {
     const struct sample broken = sample_of(study, 1, group);
@@ -317,6 +334,7 @@ static void say_broken(FILE *page, const struct study *study, int group)
     free((void *)broken.value);
 }
 
+// More than three groups would make no sentence.
 void put_study_headline(FILE *page, const struct study *study)
 {
     put_line(page, "%d runs", study->n);
@@ -340,6 +358,7 @@ void put_differences(FILE *page, const struct study *study)
     put_line(page, n ? "." : "");
 }
 
+// Scenes may differ in any number of keys; the table has room for MOST_SHOWN.
 static size_t shown_keys(const struct study *study)
 {
     const size_t n = json_array_size(study->differing);
@@ -397,6 +416,7 @@ struct axis {
     double least, most;
 };
 
+// Pixels from the left, of WIDE.
 static double on_axis(struct axis axis, double value)
 {
     return LEFT +
@@ -472,6 +492,8 @@ static void put_caption(FILE *page, const struct study *study, int column)
     fputs("</p>\n", page);
 }
 
+// An SVG of its own for each column: a line of LINE pixels a group, the axis below with
+// its ends and middle. A figure's caption has the same in words.
 void put_distributions(FILE *page, const struct study *study)
 {
     for (int c = 0; c < COLUMNS; c++) {

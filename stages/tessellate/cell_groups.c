@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Groups cells by a counting sort over their first corner: the corner of the lowest
 // base, taken at that base, so that all copies of a cell fall in one group. Cells
-// without a grain among their corners are left out.
+// without a grain among their corners are left out: they have no node that is wanted.
+//     first_corner    the corner with the lowest base; -1 for cells left out;
+//     base            from that corner, which may be a copy, to the generator itself;
+//     number_places   where the nodes of each base begin: an upper bound, as cells of a
+//                     group may share a node;
+//     filling         cells in the order of the triangulation, so ascending in a group.
+// Cells that share a node by being copies of each other are in one group; so a group
+// can be looked at by itself, by one thread. O(cells + generators).
 #include "cell_groups.h"
 
 #include "basics/memory.h"
 
 #include <stdlib.h>
 
+// Whether generator I is a grain or a reflection itself, in no other image.
 static bool is_base(const struct generators *generators, int32_t i)
 {
     return !has_copies(generators) ||

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Groups of cells that may share a node.
+// Groups of cells that may share a node, as copies of each other in a periodic box do:
+// such cells have the same bases, and so the same lowest one.
 #ifndef CRAQUELURE_CELL_GROUPS_H
 #define CRAQUELURE_CELL_GROUPS_H
 

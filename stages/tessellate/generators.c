@@ -56,7 +56,10 @@ static struct vector scaled(const struct packing *packing, struct vector x, doub
                            from_corner.z / unit};
 }
 
-// Finds the round wall around the grains; along its round axes the box has no walls.
+// Finds the round wall around the grains; along its round axes the box has no walls, so
+// no grain is reflected in a wall of the box that it cannot reach. Bodies that grains
+// lie around, and boxes within the box, need no images: they cut the network later
+// (cut.h).
 static void place_walls(const struct packing *packing, struct generators *generators)
 {
     for (int axis = 0; axis < 3; axis++)
@@ -73,6 +76,8 @@ static void place_walls(const struct packing *packing, struct generators *genera
     }
 }
 
+// In m, before anything is rounded: that a centre lies on the wrong side of a body is
+// said of the packing, not of the grid.
 static enum status check_within(const struct packing *packing, struct reason *reason)
 {
     static const char *const name[] = {"box", "cylinder", "sphere", "disc"};
@@ -90,6 +95,8 @@ static enum status check_within(const struct packing *packing, struct reason *re
     return STATUS_OK;
 }
 
+// On the grid: a centre on a wall would coincide with its own reflection. Where the box
+// repeats grains were moved into it; where a round wall is, check_within decides.
 static enum status check_inside(const struct generators *generators,
                                 struct reason *reason)
 {
@@ -165,7 +172,8 @@ static void grow(struct generators *generators)
         reallocate(generators->origin, capacity, sizeof *generators->origin);
 }
 
-// Adds a generator, as a copy of generator FROM.
+// Adds a generator, as a copy of generator FROM, whose place, base, wall or image the
+// caller then changes. Pointers into the arrays do not outlive it.
 static int add_like(struct generators *generators, int from)
 {
     if (generators->n == generators->capacity) grow(generators);
@@ -175,6 +183,7 @@ static int add_like(struct generators *generators, int from)
     return i;
 }
 
+// How far generator I is from a wall of the box, inwards; in units.
 static double depth(const struct generators *generators, int i, int wall)
 {
     const double at = component(generators->point[i].at, wall / 2);
@@ -184,6 +193,7 @@ static double depth(const struct generators *generators, int i, int wall)
 // Reflections in planes tangent to a wall this much larger, in units, stay clear of it.
 static const double ROUND_CLEARANCE = 0.25;
 
+// Reflections are bases of their own: each is numbered by its place in the array.
 static void add_round_reflections(struct generators *generators, double grid)
 {
     for (int i = 0; i < generators->n_particle && generators->is_round; i++) {
@@ -256,6 +266,8 @@ static struct vector wrapped(const struct packing *packing, struct vector at)
     return at;
 }
 
+// Puts generators in the order of insertion_order.h. Their origins go along, so nothing
+// that is found later depends on this order.
 static void sort_generators(struct generators *generators)
 {
     const int n = generators->n;
@@ -277,6 +289,8 @@ static void sort_generators(struct generators *generators)
     generators->origin = origin;
 }
 
+// Grains first, so that base i is grain i; then reflections, which are bases, too; then
+// copies of all bases.
 enum status place_generators(const struct packing *packing, double reach, bool power,
                              struct generators *generators, struct reason *reason)
 {

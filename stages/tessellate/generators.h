@@ -50,16 +50,18 @@ struct generators {
 // rounded to 2^-42 of the mean diameter: what is degenerate but for rounding errors (a
 // lattice) becomes exactly so, the exact predicates then make no slivers of the noise,
 // and copies are exact. A grain outside the box along a direction that repeats is moved
-// into it. STATUS_BAD_DATA when a grain's centre is outside the box or on a wall.
+// into it. STATUS_BAD_DATA when a grain's centre is outside the box, on a wall, or on
+// the wrong side of a body. The caller frees GENERATORS with generators_free, also
+// after a failure. There must be a grain.
 enum status place_generators(const struct packing *packing, double reach, bool power,
                              struct generators *generators, struct reason *reason);
 void generators_free(struct generators *generators);
 
-// STATUS_BAD_DATA if two grains have the same centre: only one of them would get a
-// cell.
+// STATUS_BAD_DATA if two grains have the same centre, also across a side that repeats:
+// only one of them would get a cell. O(n log n).
 enum status check_distinct(const struct generators *generators, struct reason *reason);
 
-// POSITION in another image of the box.
+// POSITION in another image of the box, in units; exact on the grid.
 struct vector position_in_image(const struct generators *generators,
                                 struct vector position, struct image image);
 

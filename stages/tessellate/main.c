@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// tessellate: the pore network between the grains.
+// tessellate: the pore network between the grains. Reads a packing, writes a network.
 //
-// In this order: read the packing; find the power or Voronoi diagram and from it nodes,
-// throats, faces and clearances (tessellate.h); give throats their share of the void,
-// if asked; write. A layer of grains (dimensions=2) gives a network in its plane.
+// In this order: read grains, box and bodies; then all of diagram.h, that is diagram,
+// nodes, throats with their clearances, faces, the cuts by bodies, what throats
+// conduct, entry radii, boundary layer, cells left out, the plane of a layer; then the
+// throats' shares of the void, if asked; write. Conductances and entry radii come
+// before cells are left out, as they need every face around a throat. Shares of the
+// void come last and need whole cells between flat walls: other networks are refused
+// (give_void_volumes).
+//
+// The choices of throat_radius are enum clearance, and `entry` behind them, which is no
+// clearance: those of `segment` are found first, and entry radii only widen them. A
+// layer of grains (dimensions=2) gives a network in its plane, whose throats are
+// cylinders of their clearance in any case: conductance is not looked at there, and
+// entry acts as segment. contact_angle is in degrees here, in rad from here on.
+//
+// What refuses a packing (65) names the dataset and row. `model` in the provenance says
+// which diagram, radii, volumes and conductances the network has.
 #include "artifacts/artifact.h"
 #include "artifacts/write_network.h"
 #include "basics/status.h"
@@ -75,8 +88,8 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = table};
 
-// In a Voronoi diagram larger grains stick out into the void of their neighbours'
-// cells.
+// Gives volumes in m3 that sum to the void. In a Voronoi diagram larger grains stick
+// out into the void of their neighbours' cells.
 static enum status give_void_volumes(const struct tessellation *how,
                                      struct network *network, struct reason *reason)
 {
@@ -113,6 +126,7 @@ static const char *bounding(const struct packing *packing, enum boundary boundar
     return text;
 }
 
+// For `model`; by enum clearance.
 static const char *const radius_rule[] = {
     [CLEARANCE_SEGMENT] = "the throat to any grain",
     [CLEARANCE_LINE] = "the infinite line through it to the grains beside it [K 3.7]",

@@ -1,8 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Removal of parts of a network: what is kept is marked first (grains, then their
-// faces, nodes and throats), then nodes, throats and faces are compacted in place, in
-// their old order. Elimination keeps whole cells only; a plane keeps what lies in the
-// lower wall y.
+// Removal of parts of a network: what is kept is marked first, then nodes, throats and
+// faces are compacted in place, in their old order. For the elimination
+//     keep_grains           grains with a cell, no face on a wall, and not auxiliary;
+//     face_walls            marks of the walls on nodes at cut cells, which must come
+//                           while the faces of those cells are still there;
+//     keep_neighbours       faces of these grains, nodes of those faces, throats beside
+//                           these grains;
+//     keep_boundary_layer   throats of the boundary layer at those nodes, and their
+//                           other nodes.
+// A plane keeps what lies in the lower wall y: nodes with that bit, throats between two
+// of them, faces on that wall.
+//
+// Grains are not removed: the packing of the network stays whole. Trap: throat_volume
+// is not compacted, so volumes must be given afterwards, as tessellate does.
 #include "remove_cells.h"
 
 #include "basics/memory.h"
@@ -23,6 +33,7 @@ static bool is_along_y(int32_t side)
     return side < 0 && (-1 - side) / 2 == 1;
 }
 
+// Marks the grains whose cells stay; returns how many.
 static int keep_grains(const struct network *network, bool layer, bool *kept)
 {
     bool *cut = NEW_ARRAY(bool, network->packing.n_particle);
@@ -96,6 +107,7 @@ static void compact_throats(struct network *network, const struct kept_parts *ke
     network->n_throat = n;
 }
 
+// Writing never overtakes reading, as faces only get fewer and corners with them.
 static void compact_faces(struct network *network, const struct kept_parts *kept)
 {
     int n = 0;

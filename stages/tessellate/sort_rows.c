@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counting sort by the first key, then a comparison sort in each of its short groups,
-// in parallel. Rows themselves are not moved: their indices are. The last key is the
-// item, which no two rows share, so the order is one whatever the threads do. Groups of
-// up to 32 rows are sorted by insertion.
+// in parallel. Rows themselves are not moved: their indices are, and sort_rows copies
+// each row once in the end.
+//     offset[key + 2]   counts rows of a first key, then is summed to where key + 1
+//                       begins;
+//     order[offset[key + 1]++]   filling, which moves this one to where key ends.
+// The last key is the item, which no two rows share, so the order is one whatever the
+// threads do. Groups of up to 32 rows are sorted by insertion, larger ones by qsort_r.
+//
+// O(count + largest first key) in time and memory while groups are short: first keys
+// are to be numbers such as those of nodes or grains, not sparse ones, and not below 0.
+// Comparisons jump about in memory; rows of a group are asked for some 32 ahead.
 #include "sort_rows.h"
 
 #include "basics/memory.h"
@@ -34,6 +42,7 @@ void sort_few_rows(struct row *rows, int count)
     }
 }
 
+// Compares rows by their indices; for qsort_r.
 static int compare_numbered(const void *a, const void *b, void *rows)
 {
     const struct row *row = rows;

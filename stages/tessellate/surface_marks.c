@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which wall a node at the outer surface belongs to when cells beyond are left out [K
-// 3.3.5]. For each grain beyond, the area vectors of its faces with grains that stay
-// are summed, and of the walls that cut its cell the one most nearly along this sum is
-// taken.
+// 3.3.5]. For each grain beyond (one that does not stay and has a face with one that
+// does),
+//     outwards = sum of the area vectors of its faces with grains that stay, each
+//                pointing to the grain beyond, m2,
+//     cuts     = walls that cut its cell: on which it has faces,
+// and the grain's wall is the one of `cuts` with the largest component of `outwards`
+// along its outward normal. All nodes of these faces get its bit. A grain beyond that
+// no wall cuts gives none; a node at faces with several grains beyond may get several.
+//
+// Trap: such nodes carry a wall's bit and do not lie on that wall. Who moves nodes
+// along walls must look where they are (is_on_wall in merge-nodes/merge.c).
 #include "surface_marks.h"
 
 #include "basics/memory.h"
@@ -10,7 +18,7 @@
 
 #include <stdlib.h>
 
-// Walls that cut the cell of each grain, as bits.
+// Walls that cut the cell of each grain (n_particle), as bits. The caller frees it.
 static uint8_t *find_cuts(const struct network *network, bool layer)
 {
     uint8_t *cuts = NEW_ARRAY(uint8_t, network->packing.n_particle);
@@ -78,6 +86,7 @@ static int *find_walls(const struct network *network, const bool *stay, bool lay
     return wall;
 }
 
+// Bits are added to those that nodes have: they may lie on other walls as well.
 void face_walls(struct network *network, const bool *stay, bool layer)
 {
     int *wall = find_walls(network, stay, layer);
@@ -90,6 +99,7 @@ void face_walls(struct network *network, const bool *stay, bool layer)
     free(wall);
 }
 
+// Nothing to mark without auxiliary grains. Throats first: their marks need no walls.
 void mark_boundary_layer(struct network *network, bool layer)
 {
     const struct packing *packing = &network->packing;

@@ -15,7 +15,8 @@ struct dried_link {
 
 struct dried_node {
     int begin, end; // of its links, as they were when it dried
-    double total;   // conductance of all its links
+    double total;   // conductance of all its links, to the air and, through the throat
+                    // that empties, to the other node as well
 };
 
 // It owns its arrays.

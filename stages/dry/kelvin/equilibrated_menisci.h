@@ -4,7 +4,8 @@
 //
 // Their system has a sparse Cholesky factor that is updated. A body that joins or
 // leaves adds or deletes a row, and so does one whose nodes change; a node that dries
-// is eliminated by one downdate.
+// is eliminated by one downdate. The factor only saves time: without it the next
+// solution makes it again, from the vapour as it is.
 #ifndef CRAQUELURE_EQUILIBRATED_MENISCI_H
 #define CRAQUELURE_EQUILIBRATED_MENISCI_H
 

@@ -5,6 +5,9 @@
 // Its Cholesky factor follows the graph as it changes, by updates and downdates of rank
 // one (CHOLMOD), and preconditions conjugate gradients. Nodes that leave stay in the
 // factor as rows without links; when many have left, the graph should be made again.
+//
+// In node i:  residual_i = source_i + sum_j conductance_ij (potential_j - potential_i)
+//                          + sum over its arms of conductance (level - potential_i).
 #ifndef CRAQUELURE_CLUSTER_LAPLACIAN_H
 #define CRAQUELURE_CLUSTER_LAPLACIAN_H
 

@@ -9,7 +9,8 @@
 
 enum throat_list { LIST_INSIDE, LIST_MENISCI, LISTS };
 
-// It owns its arrays.
+// It owns its arrays. Each throat with liquid is on one list, doubly linked; a throat
+// without is on none.
 struct cluster_members {
     int *cluster;   // (n_throat) on whose lists it is, -1: none
     int *next;      // (n_throat) on its list, -1: the last

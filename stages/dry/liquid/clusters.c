@@ -1,11 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connected clusters of liquid as throats empty, without searching the whole network
 // at each event. When a throat empties its cluster can only split at its two nodes.
-// Breadth- first searches start from each neighbouring throat and advance by one
+// Breadth-first searches start from each neighbouring throat and advance by one
 // throat in turn (Even and Shiloach 1981 interleave searches alike). Two that meet are
 // united; one that is exhausted has found a new cluster; when one search is left its
 // throats keep the old identity. So an event costs O(size of the smaller parts), and
 // most cost O(1), since neighbours soon meet.
+//
+// What holds between events:
+//     of_throat[t] = c   and   size[c] = how many t have it,
+//     heap[c] has the rank of every meniscus of c, and maybe of throats that have left,
+//     found_by[t] = -1   and   n_search = 0.
+// The last is restored by forgetting what was found, throat by throat: clearing all of
+// found_by would cost O(n_throat) an event. Arrays of searches are used again.
+//
+// Traps: an identity that has ended is given out again, so whoever remembers something
+// by identity must follow each event (`moved`). Which part keeps the old identity
+// depends on the order of the incidence, so runs repeat.
 #include "clusters.h"
 
 #include "basics/memory.h"
@@ -24,6 +35,8 @@ struct search {
 
 // --- heap --------------------------------------------------------------------------
 
+// A rank at most once in a heap: add_meniscus pushes it once, found_cluster once more,
+// into the heap of a cluster just made.
 static void heap_push(struct rank_heap *heap, int rank)
 {
     GROW_ARRAY(heap->rank, heap->n, heap->capacity);
@@ -48,6 +61,9 @@ static void heap_pop(struct rank_heap *heap)
 
 // --- identities --------------------------------------------------------------------
 
+// Both arrays have one capacity: the first grows by a copy, so that the second still
+// sees the old one. Identities that have ended are given out first, so there are never
+// more than there once were clusters at a time.
 static int new_cluster(struct clusters *clusters)
 {
     clusters->count++;
@@ -77,6 +93,7 @@ static void add_meniscus(struct clusters *clusters, int throat)
 
 // --- searches ----------------------------------------------------------------------
 
+// Searches are few, as many as throats at two nodes: no path is shortened.
 static int root_of(const struct clusters *clusters, int search)
 {
     while (clusters->search[search].joined != search)
@@ -162,6 +179,8 @@ static void found_cluster(struct clusters *clusters, int root, int old)
 }
 
 // Advances the searches in turn until at most one part is unfinished; it stays OLD.
+// UNFINISHED counts roots that still have a search to advance: it falls when two unite
+// and when all of a root have run dry.
 static void split(struct clusters *clusters, int old)
 {
     int unfinished = clusters->n_search;
@@ -228,6 +247,7 @@ void clusters_add_menisci(struct clusters *clusters, int node)
             add_meniscus(clusters, clusters->incidence->throat[k]);
 }
 
+// Throats that have left the cluster are dropped here, when they come to the top.
 int clusters_invasion_throat(struct clusters *clusters, int cluster)
 {
     struct rank_heap *heap = &clusters->heap[cluster];
@@ -326,6 +346,7 @@ static void heap_state(struct rank_heap *heap, int n_throat,
     stream_integers(stream, heap->rank, heap->n, 0, n_throat - 1);
 }
 
+// Heaps are kept as they are, the outdated entries too, which run_fits lets pass.
 static void identities_state(struct clusters *clusters,
                              struct checkpoint_stream *stream)
 {
@@ -349,6 +370,7 @@ static void identities_state(struct clusters *clusters,
     stream_integers(stream, clusters->unused, n, 0, clusters->n_id - 1);
 }
 
+// Identities before throats: their number bounds what throats may refer to.
 void clusters_state(struct clusters *clusters, struct checkpoint_stream *stream)
 {
     const struct network *network = clusters->network;

@@ -14,8 +14,8 @@
 
 #include <stdbool.h>
 
-// A binary heap of throat ranks, lowest (widest throat) on top. Throats that have left
-// the cluster stay until they come to the top.
+// A binary heap of throat ranks, lowest (gas enters it first) on top. Throats that have
+// left the cluster stay until they come to the top.
 struct rank_heap {
     int *rank;
     int n, capacity;

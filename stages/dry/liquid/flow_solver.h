@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is remembered of the flow in clusters from event to event, and the workspace of
 // its solvers. Potentials are liquid pressure plus weight, in the units of meniscus.h.
+// For the files of this folder only. Nothing here is in a checkpoint: it only saves
+// time, and is forgotten at moments that do not depend on checkpoints (resume.c).
 #ifndef CRAQUELURE_FLOW_SOLVER_H
 #define CRAQUELURE_FLOW_SOLVER_H
 
@@ -14,7 +16,8 @@
 // FLOW_TOLERANCE (cluster_flow.h) is what is still accepted.
 static const double FLOW_TARGET = 5e-13;
 
-// What is known of a cluster from previous steps.
+// What is known of a cluster from previous steps. It owns .graph and .node. Identities
+// of clusters are given out again, so flow_solver_follow must see every event.
 struct cluster_memory {
     struct cluster_laplacian *graph; // NULL: none
     int *node;                       // (graph->n) of its rows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the liquid is: in the throats, in parts; in the nodes, all or nothing
-// [K 3.4.1].
+// [K 3.4.1]. It owns the vapour and the clusters, because both change with every throat
+// that empties, and only here: so the three cannot come to disagree.
 #ifndef CRAQUELURE_OCCUPANCY_H
 #define CRAQUELURE_OCCUPANCY_H
 
@@ -10,7 +11,7 @@
 #include "dry/gas/vapour.h"
 
 // It owns its arrays and parts, not NETWORK. Volumes are scaled by the cube of the unit
-// of length.
+// of length. Throats of other kinds than THROAT_NETWORK have volume 0 and never liquid.
 struct occupancy {
     const struct network *network;
     struct incidence incidence;
@@ -34,6 +35,7 @@ struct occupancy {
     bool breakthrough; // gas has reached one of the far walls
 };
 
+// How to make one. It owns nothing.
 struct occupancy_form {
     double length;                // m, the unit
     bool gas_parts;               // as in struct clusters
@@ -53,14 +55,16 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
                            struct reason *reason);
 
 // THROAT has lost its last liquid: gas fills it and both its nodes. The vapour gains a
-// link, and its cluster may split.
+// link, its cluster may split, and each of its nodes becomes wet, or dry if no liquid
+// is left there. Once for each throat. `total_liquid` is the caller's to change.
 void occupancy_empty_throat(struct occupancy *occupancy, int throat);
 
 // Saturation of THROAT, from 0 to 1. Only at the start and in viscous or Kelvin runs:
 // else emptying_times_saturation knows it.
 double occupancy_saturation(const struct occupancy *occupancy, int throat);
 
-// Keeps all that changes, or restores it into an occupancy just made.
+// Keeps all that changes, or restores it into an occupancy just made, of the same
+// network and form. Whether the parts then agree is for run_fits to say.
 void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream);
 
 void occupancy_free(struct occupancy *occupancy);

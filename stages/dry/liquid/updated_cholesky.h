@@ -3,7 +3,8 @@
 // and Hager 1999, CHOLMOD).
 //
 // It is meant as a preconditioner: small errors accumulate in it, and arms are followed
-// only roughly.
+// only roughly. A link that changes is one column of an update; where many change at
+// once it is factorised again, which is cheaper then.
 #ifndef CRAQUELURE_UPDATED_CHOLESKY_H
 #define CRAQUELURE_UPDATED_CHOLESKY_H
 

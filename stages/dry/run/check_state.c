@@ -2,6 +2,15 @@
 // Checks a restored state part by part. Each function compares a list with what it is
 // derived from: sizes with members, places with what stands there, flags with counts.
 // A state that passes cannot lead the run outside its arrays or into an endless loop.
+//
+// In this order, which run_fits keeps: clusters, occupancy, vapour, what has changed
+// since the last step, losses, history, timers. The stream has checked by then that
+// each index lies in its array (go_on_from asks it first), so these functions may use
+// indices before they know that they make sense.
+//
+// It is not checked that numbers are those of a drying: volumes, rates and factors may
+// be wrong. The restart artifact has the digests of parameters and inputs for that.
+// Each function is linear in what it looks at.
 #include "check_state.h"
 
 #include "basics/disjoint_sets.h"
@@ -33,7 +42,9 @@ static bool identities_fit(const struct clusters *clusters)
     return fits;
 }
 
-// A cluster is one connected component of the liquid, and all of it.
+// A cluster is one connected component of the liquid, and all of it. Throats at a node
+// that joins must be of one cluster; so no component has two clusters. Components are
+// as many as clusters in use; so no cluster has two components.
 static bool pieces_fit(const struct clusters *clusters)
 {
     const struct incidence *incidence = clusters->incidence;
@@ -182,7 +193,8 @@ static bool losing_fit(const struct emptying_times *times)
     return true;
 }
 
-// Each share and its place at a node point at each other, and timers count them.
+// Each share and its place at a node point at each other, and timers count them. A
+// place is one throat at one node, a row of the incidence.
 static bool shares_fit(const struct emptying_times *times)
 {
     const struct incidence *incidence = &times->occupancy->incidence;
@@ -222,6 +234,8 @@ static bool rises(const double *value, int n)
     return true;
 }
 
+// Times may be equal, as far as their digits reach, but never fall. Saturations and
+// rates are only bounded.
 static bool history_fits(const struct recorder *recorder)
 {
     const struct drying_history *history = recorder->history;

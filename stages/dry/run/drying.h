@@ -60,7 +60,8 @@ struct drying_history {
 
     double boundary_layer_thickness; // m
     int boundary_layers;
-    double initial_liquid; // kg: what the throats lose in all, since all end empty
+    double initial_liquid; // kg in the throats at the first step; all of it is lost if
+                           // the run goes on until all are dry
     double evaporated;     // kg: integral of the rate into the drying air
     double
         vapour_residual; // |what throats lose less what reaches the air|, of the rate

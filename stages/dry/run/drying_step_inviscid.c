@@ -3,6 +3,11 @@
 // throat has emptied [K 3.4.2, steps 5 and 6]. Of the throats that lose, only the
 // saturations that differ from the last recorded step are written, in ascending order:
 // the losing throats and those that have emptied are merged as two sorted lists.
+//
+// In this order: the rate of now; `duration` to the first timer that ends; time and
+// evaporated mass; events of all throats that end together; gas fills these, which
+// changes rates and clusters; breakthrough; the record. The rate must be read before
+// gas fills anything, as it is that of the interval that ends here.
 #include "run.h"
 
 #include <math.h>
@@ -31,6 +36,7 @@ static void record_changes(struct run *run)
     run->n_ended = 0;
 }
 
+// The imbalance is looked at where steps are recorded only: it costs a sum over all.
 static void record_step(struct run *run)
 {
     if (!step_is_due(run)) return;

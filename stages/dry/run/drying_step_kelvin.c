@@ -3,8 +3,17 @@
 // has emptied or filled, or has changed by saturation_step. The losses are found at the
 // end of a step, not at its beginning: the rate that is recorded with the step is
 // theirs.
+//
+// In this order: losses found before are carried out until the first throat has emptied
+// or filled; losses for the new menisci; the record; pressures that are due, of viscous
+// liquid, which belong to the new losses. begin_run finds the first losses, and a
+// checkpoint keeps them. Once all is dry there are none to find, and the rate is 0.
+// Throats may also gain by condensation, so steps without one that has emptied are
+// counted (note_idle).
 #include "run.h"
 
+// Viscous liquid couples flow and vapour in one solution; inviscid and immobile liquid
+// needs the vapour alone.
 enum status find_kelvin_losses(struct run *run, struct reason *reason)
 {
     if (run->conditions->liquid != LIQUID_VISCOUS)

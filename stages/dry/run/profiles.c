@@ -3,6 +3,16 @@
 // saturation by slices over the depth, of the surface, and the sizes of clusters.
 // Clusters are found with a disjoint-set forest: liquid throats at a node belong
 // together unless gas has entered the node.
+//
+//     slice[s]  = sum of S V / sum of V,   throats whose middles lie in slice s,
+//     surface   = the same over throats with a node on an open wall,
+//     clusters[k] = components of 2^k to 2^(k+1) - 1 throats,
+// with S the saturation of a throat and V its volume. For each level in turn: go_on_to
+// replays changes to its step, then the three are measured, and all S copied if wanted.
+//
+// Nothing is interpolated within a step: a profile belongs to the step that is first at
+// or below its level. Gas comes to a node only with a throat that has emptied there, so
+// nodes of the open surface join until then, as in struct clusters.
 #include "profiles.h"
 
 #include "basics/disjoint_sets.h"
@@ -11,17 +21,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+// The network at the step that the replay has come to, and room to measure it.
 struct snapshot {
     const struct network *network;
     unsigned open_walls;
     bool gas_parts;
-    double *saturation; // (n_throat) now
-    int *slice;         // (n_throat) -1: holds no liquid at any time
-    double full[PROFILE_SLICES];
-    int *parent; // (n_throat) of the clusters' forest
-    int *size;   // (n_throat)
-    int *first;  // (n_node) a liquid throat there, -1: none yet
-    bool *gas;   // (n_node)
+    double *saturation;          // (n_throat) now
+    int *slice;                  // (n_throat) -1: holds no liquid at any time
+    double full[PROFILE_SLICES]; // m3 of throats in each slice
+    int *parent;                 // (n_throat) of the clusters' forest
+    int *size;                   // (n_throat)
+    int *first;                  // (n_node) a liquid throat there, -1: none yet
+    bool *gas;                   // (n_node)
 };
 
 // 0 at the open wall, 1 at the one opposite; with several open, from the first.

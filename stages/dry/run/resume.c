@@ -3,6 +3,16 @@
 // is kept only for speed (factors, graphs) is not in the state: it is forgotten every
 // STEPS_BETWEEN_CUTS steps, in runs with and without checkpoints alike, so that a run
 // that continues makes the same bytes.
+//
+// Order: time and sums, the history, occupancy (with vapour and clusters), what has
+// happened since the last recorded step, then what the kind of liquid needs (menisci
+// and their losses, flow and its pressures, both together, or timers). Values have no
+// names, so a count comes before the array whose length it is. Which parts there are
+// follows from conditions, and these are the same in both runs: the restart artifact
+// is refused for other parameters or inputs.
+//
+// Trap: a member that a step changes and that is missing here would let a continued run
+// drift from one in one piece without a message.
 #include "resume.h"
 
 #include "basics/memory.h"
@@ -13,6 +23,8 @@
 // Forgetting costs a factorisation, as much as some ten steps.
 enum { STEPS_BETWEEN_CUTS = 256 };
 
+// Rows of snapshots that are still to come are not kept. While restoring, room is made
+// for all of them, as keep_pressures does at the first.
 static void pressures_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct drying_history *history = run->recorder.history;
@@ -83,7 +95,7 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
         emptying_times_state(&run->times, stream);
 }
 
-static const char streams[] = "drying";
+static const char streams[] = "drying"; // prefix of the arrays in the artifact
 
 // Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0).
 void keep_if_due(struct run *run, const struct keeper *keeper)
@@ -101,6 +113,8 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
     free_kept_state(&kept);
 }
 
+// Whole and consistent, or refused: a state is trusted only after both checks. The flow
+// then starts from scratch, as it does after each cut in the run that kept it.
 enum status go_on_from(struct run *run, const struct kept_state *kept,
                        struct reason *reason)
 {

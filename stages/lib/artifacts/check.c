@@ -238,8 +238,8 @@ static bool has(const struct subject *subject, const char *rule)
     return json_object_get(subject->rules, rule) != NULL;
 }
 
-// Rules on how values follow one another; PREVIOUS is the value before the block.
-// PREVIOUS carries the last value over the border between two blocks.
+// Rules on how values follow one another; PREVIOUS is the last value of the block
+// before.
 static enum status check_order(const struct subject *subject, const double *block,
                                hsize_t first, hsize_t count, double previous,
                                struct reason *reason)

@@ -3,6 +3,10 @@
 // artifact, under one digest; a child process writes it, so that a full disk does not
 // end the run; a restart artifact is taken only by a call of the same program,
 // parameters and inputs; and the keeper asks flag and clock whether a state is due.
+//
+//     /digest        (32) SHA-256 over the arrays, of the engine, then of the stage
+//     /engine/NAME   arrays of the engine; rank and type by schemas/restart.json
+//     /stage/NAME    arrays of the stage
 #include "artifacts/checkpoint.h"
 
 #include "basics/memory.h"
@@ -110,6 +114,7 @@ static int by_name(const void *a, const void *b)
     return strcmp((*p)->name, (*q)->name);
 }
 
+// Of each: the name with its null, the count, the numbers as they lie in memory.
 static void digest_list(EVP_MD_CTX *digest, const struct array_list *list)
 {
     const struct named_array **sorted =
@@ -172,6 +177,7 @@ static int write_state(const struct checkpoint *checkpoint,
 
 // ---- whose it is --------------------------------------------------------------------
 
+// As texts: JSON is canonical on both sides, so equal values are equal texts.
 static void check_same(const struct artifact *artifact, const char *what,
                        const char *ours)
 {
@@ -224,6 +230,7 @@ static double now(void)
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+// Never by a cycle or a load: when states are kept must not touch results.
 static bool due(void *context)
 {
     const struct checkpoint *checkpoint = context;

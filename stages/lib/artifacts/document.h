@@ -22,7 +22,8 @@ bool may_be_either(const struct bytes *beginning);
 json_t *document_of(const char *path, const struct bytes *bytes);
 
 // Every member that SCHEMA asks for is there and of its type; else STATUS_BAD_DATA with
-// the member in REASON.
+// the member in REASON. A type that ends in "?" may be null; members that SCHEMA does
+// not list are let through.
 enum status check_document(const json_t *document, const struct schema *schema,
                            struct reason *reason);
 

@@ -2,6 +2,12 @@
 // One table gives each member its attribute in the group /liquid; reading, writing and
 // comparing go by it or by the two that another stage needs: surface tension and
 // contact angle.
+//
+//     /liquid        temperature (K), surface_tension (N/m), contact_angle (degrees),
+//                    density (kg/m3), viscosity (m2/s), molar_mass (kg/mol)
+//
+// A property that is not known is NAN in memory and left out of the file, so that a
+// number in a file was known to whoever wrote it.
 #include "artifacts/liquid.h"
 
 #include <math.h>
@@ -34,6 +40,7 @@ struct liquid_properties liquid_of(const struct conditions *conditions)
                                       .molar_mass = property[FLUID_MOLAR_MASS]};
 }
 
+// NAN also where the schema of ARTIFACT has no such attribute.
 struct liquid_properties artifact_get_liquid(const struct artifact *artifact)
 {
     struct liquid_properties liquid;
@@ -62,6 +69,8 @@ void liquid_complete(struct liquid_properties *told,
     if (isnan(told->contact_angle)) told->contact_angle = has->contact_angle;
 }
 
+// A thousandth of the larger: digits lost in printing do not count. False where one is
+// NAN.
 static bool differ(double one, double other)
 {
     return fabs(one - other) > 1e-3 * fmax(fabs(one), fabs(other));

@@ -10,7 +10,8 @@
 
 #include <stdbool.h>
 
-// In the units of the schemas, all above 0 but the angle; NAN: not known.
+// In the units of the schemas, all above 0 but the angle; NAN: not known. A value:
+// nothing to free.
 struct liquid_properties {
     double temperature;     // K
     double surface_tension; // N/m
@@ -30,6 +31,7 @@ void artifact_put_liquid(struct artifact *artifact,
                          const struct liquid_properties *liquid);
 
 // Gives TOLD the surface tension and contact angle of HAS where they are not known.
+// What neither knows stays NAN: the caller says what must be given.
 void liquid_complete(struct liquid_properties *told,
                      const struct liquid_properties *has);
 

@@ -45,7 +45,7 @@ static int index_of(const char *name)
     return -1;
 }
 
-// "craquelure/packing/1" -> "packing" A bare name and a whole id are both understood.
+// "craquelure/packing/1" -> "packing". A bare name and a whole id are both understood.
 static void strip(const char *name, char stripped[64])
 {
     const char *begin = strncmp(name, "craquelure/", 11) ? name : name + 11;

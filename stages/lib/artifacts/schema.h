@@ -15,7 +15,7 @@ struct schema {
     const char *id;     // "craquelure/packing/1"
     json_t *document;   // the file
     json_t *datasets;   // list of dataset entries, those of "extends" included
-    json_t *attributes; // list of attribute entries
+    json_t *attributes; // list of attribute entries, of this schema alone
 };
 
 // The schema called NAME ("packing"), or whose id is NAME; NULL if there is none.
@@ -23,7 +23,8 @@ struct schema {
 struct schema *schema_find(const char *name);
 void schema_free(struct schema *schema);
 
-// The entry of dataset or attribute NAME, or NULL.
+// The entry of dataset or attribute NAME, or NULL. It is the schema's, and ends with
+// it.
 const json_t *schema_dataset(const struct schema *schema, const char *name);
 const json_t *schema_attribute(const struct schema *schema, const char *name);
 

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Artifacts out, straight to the disk where they go to one. Same input, same bytes: no
 // time stamps, and the oldest file layout, set explicitly.
+//
+// An artifact is whole or not there. artifact_create makes a file without a name in the
+// folder of the output (in memory for standard output and devices: basics/file.h), the
+// put functions fill it, and artifact_finish adds the provenance, has it checked
+// against its own schema and only then gives it its name. However a program ends before
+// that, nothing is left, and what stood at the path still stands there.
+//
+//     /                   attributes, text: schema, program, parameters, inputs, model
+//     /GROUP/NAME         dataset; type and shape by the schema, without compression;
+//                         attributes, text: units, long_name
+//     /summary, /liquid   groups with one attribute a number
+//     /VTKHDF             attributes Type, Version; datasets NumberOfPoints (1),
+//                         NumberOfCells (1), NumberOfConnectivityIds (1), Points
+//                         (n_point, 3), Connectivity (size n_cell), Offsets
+//                         (n_cell + 1), Types (n_cell); groups PointData and
+//                         CellData; Points and all in these are hard links
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
 #include "artifacts/document.h"
@@ -11,6 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+// A list of properties for making one of CLASS, for the caller to close. By default
+// each object would carry the time at which it was made.
 static hid_t untimed(hid_t class)
 {
     const hid_t list = H5Pcreate(class);
@@ -35,6 +53,7 @@ static void wrote(const struct artifact *artifact, herr_t result)
         strerror(errno));
 }
 
+// HDF5 opens the file by its descriptor (/proc/self/fd), as it has no name yet.
 struct artifact *artifact_create(const char *name, const char *path)
 {
     struct artifact *artifact = NEW_ARRAY(struct artifact, 1);
@@ -58,6 +77,8 @@ struct artifact *artifact_create(const char *name, const char *path)
     return artifact;
 }
 
+// Of fixed length, padded with nulls; an empty text gets the one null that HDF5 asks
+// for.
 static void put_text_attribute(hid_t object, const char *name, const char *text)
 {
     const hid_t type = H5Tcopy(H5T_C_S1);
@@ -88,6 +109,8 @@ static void make_groups(hid_t file, const char *name)
     }
 }
 
+// The open dataset, for the caller to close once it has its attributes. A full disk may
+// show here, hence `wrote`.
 static hid_t put_array(const struct artifact *artifact, const char *name,
                        hid_t file_type, hid_t memory_type, int rank,
                        const hsize_t *extent, const void *data)
@@ -106,6 +129,8 @@ static hid_t put_array(const struct artifact *artifact, const char *name,
     return dataset;
 }
 
+// Numbers in the schema's shape are extents; its symbols, but the first, take COLUMNS.
+// What is written is checked by artifact_finish, not here.
 void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
                         int rows, int columns)
 {
@@ -135,6 +160,7 @@ void artifact_put(struct artifact *artifact, const char *name, const void *data,
     artifact_put_table(artifact, name, data, rows, 0);
 }
 
+// HDF5 converts to the type of the schema: whole numbers come as doubles, too.
 void artifact_put_number(struct artifact *artifact, const char *name, double value)
 {
     const json_t *entry = schema_attribute(artifact->schema, name);
@@ -154,6 +180,7 @@ void artifact_put_number(struct artifact *artifact, const char *name, double val
     H5Sclose(space);
 }
 
+// A dataset a member; none at all where there are no bodies.
 static void put_bodies(struct artifact *artifact, const struct packing *packing)
 {
     const int n = packing->n_body;
@@ -186,6 +213,7 @@ void artifact_put_packing(struct artifact *artifact, const struct packing *packi
     artifact_put(artifact, "/bonds/particles", packing->bond, packing->n_bond);
 }
 
+// Each is left out where its array is NULL: such throats conduct as cylinders.
 static void put_throat_shapes(struct artifact *artifact, const struct network *network)
 {
     const int n = network->n_throat;
@@ -200,6 +228,8 @@ static void put_throat_shapes(struct artifact *artifact, const struct network *n
                      network->throat_hydraulic_radius, n);
 }
 
+// The packing goes along. Arrays that are NULL are left out: then throats are
+// cylinders, or the box does not repeat.
 void artifact_put_network(struct artifact *artifact, const struct network *network)
 {
     const int n_face_node = (int)network->face_offset[network->n_face];
@@ -228,6 +258,7 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
 
 // ---- ParaView -----------------------------------------------------------------------
 
+// ParaView wants a row for each part of a grid; here there is one part.
 static void put_count(const struct artifact *artifact, const char *name, int64_t count)
 {
     H5Dclose(put_array(artifact, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1,
@@ -279,7 +310,9 @@ static void put_vtk_header(hid_t file)
     H5Gclose(group);
 }
 
-// Cells of SIZE points each: vertices (1) or lines (2).
+// Cells of SIZE points each: vertices (1) or lines (2). Cell c has the entries
+// OFFSETS[c] to OFFSETS[c + 1] - 1 of the connectivity. Of vertices that is 0, 1, 2,
+// ..., the same as their offsets.
 static void put_vtk_cells(const struct artifact *artifact, const int32_t *connectivity,
                           int n_cell, int size)
 {
@@ -296,6 +329,8 @@ static void put_vtk_cells(const struct artifact *artifact, const int32_t *connec
     free(offsets);
 }
 
+// Hard links: one dataset under two names, which takes no room. The last part of its
+// name is the array's in ParaView.
 static void link_data(hid_t file, const char *group, const char *const *names)
 {
     for (int k = 0; names && names[k]; k++) {
@@ -344,6 +379,8 @@ static json_t *provenance(const struct invocation *invocation, json_t *inputs,
                      invocation->parameters, "inputs", inputs, "model", model);
 }
 
+// Texts as they are, JSON with sorted keys and without blanks: equal runs give equal
+// bytes. Takes MEMBERS over.
 static void put_provenance(struct artifact *artifact, json_t *members)
 {
     const hid_t root = H5Gopen2(artifact->file, "/", H5P_DEFAULT);
@@ -361,6 +398,10 @@ static void put_provenance(struct artifact *artifact, json_t *members)
     json_decref(members);
 }
 
+// Flushed first, so that the check reads what was written and knows the size. A breach
+// is blamed on the input where a stage only transcribes, on the checkpoint where the
+// run went on from one, on the sizes given where a number is merely too large, else on
+// us.
 void artifact_finish(struct artifact *artifact, const struct invocation *invocation,
                      json_t *inputs, const char *model)
 {
@@ -390,6 +431,7 @@ void artifact_finish(struct artifact *artifact, const struct invocation *invocat
     free(artifact);
 }
 
+// DOCUMENT must name its schema. Provenance is members of its first level.
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
                  const char *model)
 {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The datasets first, then the numbers of /summary, then the ParaView view, in which a
 // throat that leads around a periodic box is drawn as a point.
+//
+//     coordination = 2 n_throat / n_node     throats at a node, on average
+//     void_volume = sum of throat_volume     m3, of throats of any kind
+//     unmerged_throats, unmerged_length      only where throats were merged
 #include "artifacts/write_network.h"
 
 #include <stdlib.h>

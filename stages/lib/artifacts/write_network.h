@@ -17,7 +17,8 @@ void write_network_of(const struct network *network,
                       const struct invocation *invocation, json_t *inputs,
                       const char *model);
 
-// What they put into a network artifact, for who puts in more.
+// What they put into a network artifact, for who puts in more: datasets, summary and
+// ParaView view. The caller creates ARTIFACT and finishes it.
 void put_network_with_summary(struct artifact *artifact, const struct network *network);
 
 #endif

@@ -2,6 +2,10 @@
 // Grains as text: a line each, x y z radius in m; the box is drawn around them. Numbers
 // are separated by blanks, tabs, commas or semicolons, so CSV without a heading is read
 // as well. Empty lines and comments count when a message names a line.
+//
+// It is read line by line into arrays that double. The first line that is wrong ends
+// the reading: fewer or more than four numbers, a word, what is not finite, a radius
+// that is not above 0. A file without any grain is refused, too.
 #include "formats/grains.h"
 
 #include "basics/memory.h"
@@ -25,6 +29,7 @@ static int read_numbers(const char *line, double numbers[4])
     }
 }
 
+// NUMBER: of the line, from 1. Radii are checked last, when they are numbers.
 static enum status check_grain(const double grain[4], int count, int number,
                                struct reason *reason)
 {
@@ -52,6 +57,8 @@ enum status copy_text(const struct bytes *text, char **copy, struct reason *reas
     return STATUS_OK;
 }
 
+// Surfaces, not centres: walls touch the outermost grains. Without grains the box is
+// inside out.
 void box_around(struct packing *packing)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -66,6 +73,7 @@ void box_around(struct packing *packing)
     }
 }
 
+// copy_text first, because strsep cuts lines in place and strtod needs an end. O(n).
 enum status import_text(const struct bytes *text, struct packing *packing,
                         struct reason *reason)
 {

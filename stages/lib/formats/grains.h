@@ -26,7 +26,8 @@ bool is_lammps(const struct bytes *text);
 
 // One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
 // x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
-// STATUS_BAD_DATA with the line in REASON. On success the caller frees *PACKING.
+// Lengths are in the units of the dump. STATUS_BAD_DATA with the line in REASON. On
+// success the caller frees *PACKING.
 enum status import_lammps(const struct bytes *text, int64_t frame,
                           struct packing *packing, struct reason *reason);
 

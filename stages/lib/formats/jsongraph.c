@@ -2,6 +2,29 @@
 // Networks as JSON Graph Format, written and read: nodes, edges, and in the metadata
 // what the format has no place for (grains, faces, bodies, box). Reading checks every
 // entry and names the row that is wrong.
+//
+// The tree, in metres; * marks members that may be missing when it is read:
+//
+//     graph.directed                     false
+//          .metadata.number_of_nodes     length of nodes
+//                   .number_of_links     length of edges
+//                   .units               "m", not read
+//                   .craquelure*         box, grains, bonds, faces (rest_json)
+//          .nodes[].id                   its row, "0", "1", ...
+//                  .metadata.node_coordinates.x, .y, .z
+//                           .node_squared_radius          not read
+//                           .node_walls*                  /nodes/kind
+//          .edges[].id, .source, .target                  rows
+//                  .metadata.link_length, .link_squared_radius
+//                           .link_radius*, .link_volume*, .link_kind*
+//                           .link_diffusive_size_factor*  m
+//                           .link_hydraulic_size_factor*  m3
+//                           .link_hydraulic_radius*       m
+//
+// Other programs read the squared radius; ours stands beside it, as the root of a
+// square need not be the same to the last digit. Rows go by their ids, so lists may
+// come in any order. There is no member for kinds of grains: auxiliary ones come back
+// as solid.
 #include "formats/jsongraph.h"
 
 #include "basics/memory.h"
@@ -13,6 +36,7 @@
 
 // ---- out ----------------------------------------------------------------------------
 
+// Ids go out as text; number_of also takes numbers.
 static json_t *id_of(int number)
 {
     return json_sprintf("%d", number);
@@ -23,6 +47,7 @@ static json_t *vector_json(struct vector x)
     return json_pack("[f,f,f]", x.x, x.y, x.z);
 }
 
+// [[a, b], ...]: bonds, or the two sides of faces.
 static json_t *pairs_json(const int32_t (*pair)[2], int count)
 {
     json_t *list = json_array();
@@ -31,6 +56,7 @@ static json_t *pairs_json(const int32_t (*pair)[2], int count)
     return list;
 }
 
+// A node has the radius of its widest throat, 0 without any. O(n_node + n_throat).
 static json_t *nodes_json(const struct network *network)
 {
     double *radius = NEW_ARRAY(double, network->n_node);
@@ -58,12 +84,17 @@ static const char *const shape_name[SHAPES] = {"link_diffusive_size_factor",
                                                "link_hydraulic_size_factor",
                                                "link_hydraulic_radius"};
 
+// The place of array K in NETWORK: readers put a new array there, writers look whether
+// one is there (NULL: throats conduct as cylinders do).
 static double **shape_array(struct network *network, int k)
 {
     return (double **[SHAPES]){&network->throat_diffusion, &network->throat_flow,
                                &network->throat_hydraulic_radius}[k];
 }
 
+// Volume and kind always, what throats conduct only where the network says it. SHAPES
+// is a copy of the struct, not of its arrays, as shape_array wants one that could be
+// changed.
 static json_t *edge_json(const struct network *network, int t)
 {
     struct network shapes = *network;
@@ -89,6 +120,8 @@ static json_t *edges_json(const struct network *network)
     return edges;
 }
 
+// Each loop is a list of its own, so that no offsets are needed: {"nodes": [[...],
+// ...], "particles": [[a, b], ...]}, a wall w as -1-w.
 static json_t *faces_json(const struct network *network)
 {
     json_t *loops = json_array();
@@ -103,6 +136,7 @@ static json_t *faces_json(const struct network *network)
         pairs_json((const int32_t(*)[2])network->face_particles, network->n_face));
 }
 
+// The rows of /domain/bodies.
 static json_t *bodies_json(const struct packing *packing)
 {
     json_t *bodies = json_array();
@@ -116,6 +150,10 @@ static json_t *bodies_json(const struct packing *packing)
     return bodies;
 }
 
+// What is under "craquelure": lower, upper, periodic (three 0 or 1), particles
+// {position, radius}, bonds, faces, unmerged_throats and unmerged_length (0: not
+// merged), and bodies where there are some. All in one member, which other programs
+// pass over. Images of a box that repeats have none: such networks are refused before.
 static json_t *rest_json(const struct network *network)
 {
     const struct packing *packing = &network->packing;
@@ -156,11 +194,14 @@ static int number_of(const json_t *id)
     return whole && number >= 0 && number <= INT_MAX ? (int)number : -1;
 }
 
+// False unless LIST is three numbers; whole ones are taken, too.
 static bool get_vector(json_t *list, struct vector *x)
 {
     return !json_unpack(list, "[F,F,F]", &x->x, &x->y, &x->z);
 }
 
+// Row K of the list, which is node `id`. Without node_walls it is on no wall yet. x is
+// NAN beforehand: a node that no row is about is found by check_network.
 static enum status read_node(json_t *node, int k, struct network *network,
                              struct reason *reason)
 {
@@ -201,6 +242,10 @@ static enum status read_shapes(const json_t *metadata, int k, int t,
     return STATUS_OK;
 }
 
+// A file of another program has length and squared radius only: then the throat is a
+// cylinder of volume pi r^2 L. Ends that are no numbers become -1, and the root of a
+// square below 0 is NAN: both are left to check_network, which names the throat. A kind
+// that is not known counts as an open throat.
 static enum status read_edge(json_t *edge, int k, struct network *network,
                              struct reason *reason)
 {
@@ -228,6 +273,8 @@ static enum status read_edge(json_t *edge, int k, struct network *network,
     return read_shapes(json_object_get(edge, "metadata"), k, t, network, reason);
 }
 
+// (count,2), for the caller to free; NULL where an entry is not two whole numbers. A
+// list that is missing has no entry. Range is for the caller to check.
 static int32_t (*read_pairs(json_t *list, int *count))[2]
 {
     *count = (int)json_array_size(list);
@@ -241,6 +288,8 @@ static int32_t (*read_pairs(json_t *list, int *count))[2]
     return pair;
 }
 
+// The arrays take the place of the empty ones of network_init. Without the member there
+// are no grains.
 static enum status read_particles(json_t *rest, struct packing *packing,
                                   struct reason *reason)
 {
@@ -266,6 +315,7 @@ static enum status read_particles(json_t *rest, struct packing *packing,
                         "a radius above 0 each");
 }
 
+// Lengths first, which give the offsets and so the room; then the nodes.
 static enum status read_loops(json_t *loops, struct network *network,
                               struct reason *reason)
 {
@@ -293,6 +343,9 @@ static enum status read_loops(json_t *loops, struct network *network,
     return STATUS_OK;
 }
 
+// The first side is a grain, the second a grain or a wall, -1 to -8 as in
+// /faces/particles. Needs the number of grains. Whether a body has wall -7 or -8 is
+// checked by those who read the artifact.
 static enum status read_faces(json_t *rest, struct network *network,
                               struct reason *reason)
 {
@@ -315,6 +368,8 @@ static enum status read_faces(json_t *rest, struct network *network,
     return read_loops(loops, network, reason);
 }
 
+// A body counts before it is judged: the caller frees the network whole on a refusal,
+// and n_body stays within MOST_BODIES as longer lists are not begun.
 static enum status read_bodies(const json_t *bodies, struct packing *packing,
                                struct reason *reason)
 {
@@ -340,6 +395,8 @@ static enum status read_bodies(const json_t *bodies, struct packing *packing,
                   MOST_BODIES);
 }
 
+// Grains before bonds and faces, which refer to them. Each part is refused by its own
+// name. "periodic" must be there for the two numbers behind it to be read.
 static enum status read_rest(json_t *rest, struct network *network,
                              struct reason *reason)
 {
@@ -383,6 +440,9 @@ static bool all_in_one_place(const struct network *network)
     return network->n_throat > 0;
 }
 
+// The check comes when all nodes and edges are there, and before anything is derived
+// from them. Where our part is there it says what the box is, and node_walls what lies
+// on it; else the box is drawn around the nodes.
 static enum status read_graph(json_t *graph, struct network *network,
                               struct reason *reason)
 {
@@ -413,6 +473,8 @@ static enum status read_graph(json_t *graph, struct network *network,
     return STATUS_OK;
 }
 
+// Lists are counted before room is made for them: a wrong number of nodes cannot ask
+// for more memory than the document has.
 enum status network_from_jsongraph(const json_t *document, struct network *network,
                                    struct reason *reason)
 {

@@ -2,6 +2,19 @@
 // Networks as the four text files of Statoil, written and read. Nodes and throats count
 // from 1; reservoirs are the nodes -1 (inlet) and 0 (outlet), and throats to them come
 // after all others.
+//
+// A line is a row; numbers are separated by blanks. What is written, a line each row,
+// with a first line of _node1 and _link1 only:
+//
+//     _node1  n Lx Ly Lz    i x y z, number of throats m, m nodes, at inlet, at outlet,
+//                           m throats
+//     _node2                i 0 radius G 0             volume 0: nodes have none
+//     _link1  n             t a b radius G length
+//     _link2                t a b 0 0 length volume 0  lengths of both nodes are 0
+//
+// Traps: reading takes the first columns of a line and passes over the rest; _node2 is
+// not read; a row must have the number of its place. G is the shape factor, area over
+// perimeter squared.
 #include "formats/statoil.h"
 
 #include "basics/memory.h"
@@ -26,6 +39,7 @@ static bool at_reservoir(const struct network *network, int node, int reservoir)
     return network->node_walls[node] >> reservoir & 1;
 }
 
+// Radius (m) of the widest throat at NODE, which stands for its own; 0 without throats.
 static double widest(const struct network *network, const struct incidence *incidence,
                      int node)
 {
@@ -54,6 +68,8 @@ static double shape_factor(const struct network *network, int t)
     return CIRCLE_SHAPE;
 }
 
+// COLUMN: radius, shape factor, length, volume, in m and m3. The same row in both
+// files, as both begin with its number and ends. 17 digits give each double back.
 static void put_link(FILE *link[2], int number, int a, int b, const double column[4])
 {
     const double radius = column[0], shape = column[1], length = column[2];
@@ -85,6 +101,9 @@ static void put_links(const struct network *network, const struct incidence *inc
                     (double[4]){widest(network, incidence, i), CIRCLE_SHAPE, 0, 0});
 }
 
+// Neighbours first, then their throats, in the same order; of both, those to reservoirs
+// come last, inlet before outlet. The box begins at the origin, so its lower corner is
+// taken off.
 static void put_node(const struct network *network, const struct incidence *incidence,
                      int *const to_reservoir[2], int i, FILE *node)
 {
@@ -106,6 +125,7 @@ static void put_node(const struct network *network, const struct incidence *inci
     fputc('\n', node);
 }
 
+// Shape factors of nodes are those of circles: a node has no section.
 static void put_nodes(const struct network *network, const struct incidence *incidence,
                       int *const to_reservoir[2], FILE *node[2])
 {
@@ -118,6 +138,8 @@ static void put_nodes(const struct network *network, const struct incidence *inc
     }
 }
 
+// Links before nodes: put_links numbers the throats to reservoirs, put_nodes names
+// them.
 void statoil_from_network(const struct network *network, char *text[STATOIL_FILES])
 {
     FILE *stream[STATOIL_FILES];
@@ -170,7 +192,8 @@ static enum status read_line(struct reading *reading, int wanted, double *number
     return STATUS_OK;
 }
 
-// The same for a row that must be numbered NUMBER.
+// The same for a row that must be numbered NUMBER. Rows in another order would be
+// joined wrongly, as _link1 and _link2 are read side by side.
 static enum status read_row(struct reading *reading, int number, int wanted,
                             double *column, struct reason *reason)
 {
@@ -180,6 +203,8 @@ static enum status read_row(struct reading *reading, int number, int wanted,
                   statoil_endings[reading->file], reading->line, number, column[0]);
 }
 
+// Before room is made for them: a damaged count must not ask for more memory than the
+// file could fill.
 static enum status read_count(struct reading *reading, double count, int *n,
                               struct reason *reason)
 {
@@ -193,6 +218,7 @@ static enum status read_count(struct reading *reading, double count, int *n,
     return STATUS_OK;
 }
 
+// Only number and place; throats come from the links.
 static enum status read_nodes(struct reading *node1, struct network *network,
                               struct reason *reason)
 {
@@ -205,7 +231,9 @@ static enum status read_nodes(struct reading *node1, struct network *network,
     return STATUS_OK;
 }
 
-// Throats to reservoirs are left out.
+// Throats to reservoirs are left out. Ends, radius and the length in all are those of
+// _link1, the volume that of _link2. Throats that are kept move up, so numbers of
+// throats change where there were reservoirs.
 static enum status read_throats(struct reading *link1, struct reading *link2,
                                 struct network *network, struct reason *reason)
 {
@@ -228,6 +256,7 @@ static enum status read_throats(struct reading *link1, struct reading *link2,
     return STATUS_OK;
 }
 
+// Edges; the lower corner is the origin, as network_init leaves it.
 static enum status read_box(const double header[4], struct packing *packing,
                             struct reason *reason)
 {
@@ -241,6 +270,7 @@ static enum status read_box(const double header[4], struct packing *packing,
     return STATUS_OK;
 }
 
+// Counts come first, from both headers, so that all room is made at once.
 enum status network_from_statoil(const char *const text[STATOIL_FILES],
                                  struct network *network, struct reason *reason)
 {

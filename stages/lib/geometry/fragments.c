@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fragments by disjoint sets of grains, joined over the intact bonds; the root of a set
-// is its lowest grain. When all are joined each grain gets its root, and the fragments
-// with a fixed grain are held, else the largest.
+// is its lowest grain, in whatever order bonds come (basics/disjoint_sets.h). As they
+// are joined, of[i] only leads towards the root; fragments_end puts the root itself
+// there, and then
+//     is_held[root] = any of its grains is fixed;
+// where no grain at all is fixed, the largest fragment is held (of equals that with the
+// lowest root), so that a free body has one piece to stay. A single grain is not held
+// for its size. Grains that are gone do not count for it, but keep their entries.
 #include "fragments.h"
 
 #include "basics/disjoint_sets.h"
@@ -21,6 +26,7 @@ void fragments_free(struct fragments *fragments)
     free(fragments->is_held);
 }
 
+// Sizes are counted at the roots, which of[] holds by now. O(n).
 static void hold_largest(struct fragments *fragments, const bool *is_gone)
 {
     int *size = NEW_ARRAY(int, fragments->n);

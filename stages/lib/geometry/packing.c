@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where walls, bodies and images are. A body whose flat end lies on a side of the box,
-// to 1e-9 of its edge, is made longer there by four boxes: the side is no end of it.
+// Where walls, bodies and images are. With X = upper - lower, the edges of the box,
+//     image_offset = image * X,   image_apart = (to - from) + image * X,
+// component by component. The difference of the places comes first: seen from the other
+// end, every sign turns round and the digits stay.
+//
+// body_near moves a body by as many boxes as bring its middle nearest to X,
+//     boxes = round((x - middle) / edge)    along axes that repeat, else 0.
+// A flat end on a side of the box, to 1e-9 of its edge, or beyond it is moved outwards
+// by four boxes: the body goes on there, and the side is no end of it. Else a cylinder
+// through a box would have a lid in each side, and points near it would be nearest to a
+// surface that is not there. Round sides are never stretched: the width along x is the
+// diameter.
 #include "geometry/packing.h"
 
 #include <stdlib.h>
@@ -39,6 +49,8 @@ struct body body_near(const struct packing *packing, int k, struct vector x)
     return body;
 }
 
+// Of several bodies with this wall the nearest surface; of equally near ones the first.
+// X itself is the answer where there is none.
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x)
 {
     if (wall < WALL_COUNT) {

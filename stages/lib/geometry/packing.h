@@ -67,11 +67,12 @@ static inline int body_wall(const struct body *body)
 
 // The point nearest to X on wall 0..5, WALL_OUTER or WALL_INNER (the nearest body's; X
 // itself where there is no such body). m. Of the flat walls: X with one coordinate
-// changed.
+// changed, also where that point is beyond the edges of the box. O(n_body).
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x);
 
 // Body K in the repetition of the box nearest to X, going on beyond the sides of the
-// box that it reaches.
+// box that it reaches (to 1e-9 of the edge): there it has no flat end. Always ask this
+// one, not packing->body, where a place has to do with a body.
 struct body body_near(const struct packing *packing, int k, struct vector x);
 
 // From something in the box to what it repeats IMAGE boxes away; m. Each component is a

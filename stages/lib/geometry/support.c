@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bonded pieces are found as disjoint sets whose root is the lowest grain.
+// What touches a wall, and what hangs on it by bonds. With `inwards` the distance of a
+// centre from the wall, into the box,
+//     touches:  inwards <= (1 + 1e-6) radius,
+// so that rounding parts no grain from its wall, and a grain beyond the wall counts.
+//
+// Bonded pieces are found as disjoint sets whose root is the lowest grain, so the
+// numbers do not depend on the order of the bonds. All bonds of the packing count: it
+// does not know which have broken. A piece counts as supported, with all its grains, if
+// one of them is marked. O(n_particle + n_bond), nearly.
 #include "geometry/support.h"
 
 #include "basics/disjoint_sets.h"

@@ -12,8 +12,9 @@
 // or reaches beyond it. Where the box repeats there are no walls: leave the bits out.
 bool touches_walls(const struct packing *packing, int grain, unsigned walls);
 
-// The lowest grain of those that bonds join to each grain, itself included
-// (n_particle). The caller frees it.
+// The lowest grain of those that bonds join to each grain, itself included: equal for
+// two grains of one piece. All bonds of the packing count as intact. (n_particle); the
+// caller frees it.
 int *bonded_pieces(const struct packing *packing);
 
 // How many grains bonds join to those marked in HOLDS (n_particle), these included.

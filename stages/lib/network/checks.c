@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One rule each, for all stages that let gas into a network.
+// One rule each, for all stages that let gas into a network, in one wording. Schemas
+// cannot have them, as they hold only for the throats that take part, or link a network
+// to a parameter. A capillary pressure 2 sigma / r needs a radius above 0 and finite (a
+// NAN fails, too: the test is for what is right). Gravity along z needs a top and a
+// bottom: where the box repeats along z, a node would be above and below itself.
 #include "network/checks.h"
 
 #include <math.h>

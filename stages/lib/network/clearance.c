@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The least clearance of a throat: from those grains beside it, then from larger grains
-// in the cells around it (clearance.h says why only those). A grain nearer than the
-// clearance so far reaches into the box around the throat with that margin.
+// The least clearance of a throat, m: from those grains beside it, then from larger
+// grains in the cells around it (clearance.h says why only those). A grain matters only
+// if
+//     |centre - middle| < half + least + radius,
+// with `half` of the throat's length and `least` the clearance so far; this spares most
+// of them the distance to a segment.
+//
+// A grain nearer than `least` reaches into the box around the throat with that margin.
+// Cells list every grain that, larger by `reach`, would meet them, so the margin is
+// less by `reach`: mostly one cell is enough. Lists begin with the largest grains: the
+// first one that is not larger than `largest` ends the search. Cells are chosen by the
+// first `least`; as it falls there are some too many, never too few.
+//
+// Where the box repeats, cells are counted on beyond its sides: their number is brought
+// back, and SHIFT puts their grains where the throat sees them.
 #include "network/clearance.h"
 
+// What look_in_cell needs of the throat; m.
 struct throat {
     const struct vector *end;
     struct vector middle;
@@ -41,8 +54,8 @@ static void look_in_cell(const struct sphere_cells *grains, const int cell[3],
     }
 }
 
-// Whoever is nearer than the clearance known reaches into the box around the throat
-// with that margin.
+// Nothing to look for where the throat touches a grain already, or where no grain is
+// larger than those beside it, as with grains of one size.
 double least_clearance(const struct sphere_cells *grains, const struct vector end[2],
                        struct clear_way way)
 {

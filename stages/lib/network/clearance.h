@@ -42,7 +42,8 @@ struct clear_way {
     double largest; // radius of the grains beside it
 };
 
-// To begin with; then clear_of for each grain beside the throat.
+// To begin with; then clear_of for each grain beside the throat, in any order and as
+// often as it is met: HUGE_VAL remains where there is none.
 static const struct clear_way nothing_beside = {HUGE_VAL, 0};
 
 // With one more grain beside the throat.
@@ -57,7 +58,9 @@ static inline struct clear_way clear_of(struct clear_way way, struct vector cent
 
 // The least clearance of the throat between END, which is WAY by the grains beside it:
 // over those and all larger ones of GRAINS. Where the throat touches one already the
-// clearance stays what it is, at most 0. O(1) in packings of any sizes.
+// clearance stays what it is, at most 0. END must be in the box that GRAINS were made
+// for, or not far beyond, in the same unit. O(1) in packings of any sizes. Safe for
+// several threads: GRAINS are only read.
 double least_clearance(const struct sphere_cells *grains, const struct vector end[2],
                        struct clear_way way);
 

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the user's keys to throat_radius.c: law 0 keeps the network's radii and refuses
-// keys of a draw that would have no effect; the others are enum radius_law plus 1.
+// From the user's keys to throat_radius.c. `law` counts from 1, for 0 keeps the
+// network's radii: enum radius_law is law - 1. `how.law` and `how.seed` are set here:
+// keys fill an int and an int64_t.
+//
+// With law 0 a key that describes a draw would have no effect and is refused by its
+// name: all must have their defaults, which the table gives when it is filled from
+// nothing. So a key that says its default is let through.
+//
+// A normal law is cut at 0, as radii are positive, which shifts its mean and deviation
+// (cut_normal in throat_radius.c). Who asked for 40 +- 30 nm gets another mean; from a
+// thousandth on we say so, for each of two modes by itself.
 #include "network/drawn_radii.h"
 
 #include <stdio.h>
@@ -30,6 +39,7 @@ static enum status refuse_unused(const json_t *parameters, struct reason *reason
     return status;
 }
 
+// Adds one line to TEXT, or nothing where less than a thousandth is cut.
 static void describe_cut(double mean, double deviation, char text[RADII_TEXT])
 {
     static const double noticeable = 1e-3;

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Throat radii that a stage may draw instead of taking those of the network: its rows
 // of the parameter table, and what they fill. DRAWN_RADII_ROWS are rows for such a
-// table: `invade` and `dry` take them, so that a draw is called the same in both.
+// table: `invade` and `dry` take them, so that a draw is called the same in both. The
+// keys are throat_radius.distribution, .mean, .standard_deviation, .second_mean,
+// .second_standard_deviation, .second_share, .correlation_length and .seed, lengths in
+// m. The same seed and keys give the same radii in both stages.
+//
+// A stage puts a struct drawn_radii into its struct of parameters and calls give_radii
+// before anything is made from radii or volumes (closed throats shut, an order of entry
+// found); then report_cut_radii, or describe_cut_radii for a text of its own.
 #ifndef CRAQUELURE_DRAWN_RADII_H
 #define CRAQUELURE_DRAWN_RADII_H
 
@@ -16,9 +23,11 @@ struct drawn_radii {
     struct radius_distribution how;
 };
 
-// Gives NETWORK the radii that were asked for, if any were. STATUS_BAD_DATA as
-// draw_radii, and where none are drawn but PARAMETERS, the stage's effective ones, say
-// how. Throats become cylinders of the new radii.
+// Gives NETWORK the radii that were asked for, if any were: every throat gets one, in
+// the order of the network, and becomes a cylinder of it, without the volume and the
+// conductances that it had. With law 0 nothing changes. STATUS_BAD_DATA as draw_radii
+// (the network stays as it was), and where none are drawn but PARAMETERS, the stage's
+// effective ones with defaults filled in, say how: the reason names the key.
 enum status give_radii(struct network *network, const struct drawn_radii *radii,
                        const json_t *parameters, struct reason *reason);
 
@@ -28,7 +37,8 @@ enum status give_radii(struct network *network, const struct drawn_radii *radii,
 enum { RADII_TEXT = 400 };
 const char *describe_cut_radii(const struct drawn_radii *radii, char text[RADII_TEXT]);
 
-// The same on standard error.
+// The same on standard error, with the advice to take a lognormal law; nothing where
+// little is cut.
 void report_cut_radii(const struct drawn_radii *radii);
 
 // AT: where struct drawn_radii lies in the stage's parameter struct.

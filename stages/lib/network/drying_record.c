@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A step names only the throats that change: saturations of step k are those of step
-// k - 1 with the changes of step k.
+// k - 1 with the changes of step k, and between the two times each throat is linear in
+// time. So to have those of a step, begin with full_saturations and apply steps 0, 1,
+// ... in order, each once: there is no way back but from the start.
+//
+// Before step 0 throats of kind THROAT_NETWORK are full (1); those of the boundary
+// layer and those imposed empty hold nothing (0). O(n_throat), then O(changes) a step.
 #include "network/drying_record.h"
 
 #include "basics/memory.h"

@@ -1,8 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With X the edges of the box and `image` the boxes that lie between,
-//     along_throat = (position[second] - position[first]) + image * X.
+// Look-ups in the arrays of struct network. Nothing is kept beside them, so who changes
+// an array need tell nobody. With X the edges of the box and `image` the boxes that lie
+// between,
+//     along_throat = (position[second] - position[first]) + image * X,
+// which is exactly opposite when seen from the other end. Corners and the second grain
+// of a face are given in the repetition of the box that its first grain is in.
+//
+// What a throat holds and conducts is what the arrays say, else that of the cylinder
+// with its radius r and length L (m3, m, m3):
+//     volume = pi r^2 L,  diffusive = pi r^2 / L,  hydraulic = pi r^4 / (8 L).
+// Conductances come in units of a LENGTH that suits the network: r and L are divided by
+// it before the fourth power is taken.
+//
 // Incidence is built by counting throats per node, summing the counts to offsets, and
-// filling in the order of the throats, which makes each row ascending.
+// filling in the order of the throats, which makes each row ascending. A throat from a
+// node to its own image is in the row of that node twice.
 #include "network/network.h"
 
 #include "basics/memory.h"
@@ -36,6 +48,7 @@ bool is_layer(const struct network *network)
     return network->n_face > 0;
 }
 
+// What arrays of images hold at K; 0 where the box does not repeat and there are none.
 static struct image image_at(const struct image *image, int64_t k)
 {
     return image ? image[k] : (struct image){0};
@@ -104,6 +117,9 @@ void incidence_free(struct incidence *incidence)
     *incidence = (struct incidence){0};
 }
 
+// Looks through the throats of one node, a handful. Both nodes do not suffice: in a
+// narrow box that repeats, several throats join the same two nodes, each through
+// another image.
 int face_throat(const struct network *network, const struct incidence *incidence,
                 int face, int k)
 {
@@ -126,6 +142,8 @@ int face_throat(const struct network *network, const struct incidence *incidence
     return -1;
 }
 
+// A throat lies in a wall if both its nodes are on that same one: hence what all three
+// sets of bits have in common. Throats of the boundary layer keep their kind.
 int impose_empty_throats(struct network *network, unsigned walls)
 {
     int n = 0;
@@ -139,6 +157,7 @@ int impose_empty_throats(struct network *network, unsigned walls)
     return n;
 }
 
+// A radius that is not a number counts as closed: the test is for open ones.
 int shut_closed_throats(struct network *network)
 {
     int n = 0;
@@ -167,6 +186,7 @@ double diffusive_conductance(const struct network *network, int throat, double l
     return M_PI * radius * radius / (network->throat_length[throat] / length);
 }
 
+// Poiseuille's law for a cylinder.
 double hydraulic_conductance(const struct network *network, int throat, double length)
 {
     if (network->throat_flow)

@@ -144,9 +144,9 @@ double open_area(const struct open_section *section, double z)
     return slices.area[0];
 }
 
-// f(1 - OPEN), Happel's profile, for the open share of a polygon: open^3 / 3 + open^4 /
-// 4
-// + ..., which the logarithm would lose where little is open.
+// f(1 - OPEN), Happel's profile, for the open share of a polygon:
+//     open^3 / 3 + open^4 / 4 + ...,
+// which the logarithm would lose where little is open.
 static double array_profile(double open)
 {
     if (open > 0.25) {

@@ -52,8 +52,7 @@ struct throat_shape {
                              // to diffusion; of a cylinder its radius
 };
 
-// The open area at Z, m2 (0 or below: closed), and the rim of grains and walls there,
-// m.
+// The open area at Z (m from the first node), m2; 0 or below: closed.
 double open_area(const struct open_section *section, double z);
 
 // Resistances of thin slices in series,

@@ -2,8 +2,8 @@
 // From the faces around a throat to the polygon of its grains. With c_i, c_j the grains
 // of a face (a wall's "centre" is the foot of the grain's on it), a the first node, and
 // faces turned so that their loops lead along the throat:
-//     2 polygon t = sum over faces (c_i - a) x (c_j - a)   (without what is across
-//     walls)
+//     2 polygon t = sum over faces (c_i - a) x (c_j - a)
+// (without what is across walls),
 // which gives the direction t of the throat from the grains: that of a throat shorter
 // than rounding of its nodes too. With n the unit vector from c_i to c_j,
 //     s   = (c_i - a) . (n x t)    how far the line c_i c_j is from the throat's,

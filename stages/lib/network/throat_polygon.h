@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The polygon of grains around a throat, from the faces that meet in it.
+// The polygon of grains around a throat, from the faces that meet in it: its corners
+// are the centres of the grains, seen along the throat. Each face gives a side of it,
+// the angles at both its grains, what these cover twice, and the gap between them. Of a
+// face with a wall, or with an auxiliary grain, only the grain's own half counts, up to
+// the throat.
 #ifndef CRAQUELURE_THROAT_POLYGON_H
 #define CRAQUELURE_THROAT_POLYGON_H
 
@@ -14,12 +18,16 @@ struct throat_polygon {
     struct vector axis[2]; // across the throat
 };
 
-// Room for throats with up to MOST sides; the caller frees it.
+// Room for throats with up to MOST sides (throat_sides.most), one for each thread; the
+// caller frees it with throat_polygon_free.
 struct throat_polygon throat_polygon_init(int most);
 void throat_polygon_free(struct throat_polygon *polygon);
 
-// Fills the section of THROAT. The sides must be those of the diagram: no nodes merged,
-// no cells left out. A polygon without area has no direction: area and length are 0.
+// Fills the section of THROAT, in place of the one before; m. The sides must be those
+// of the diagram: no nodes merged, no cells left out. The throat's direction is taken
+// from the grains, as its own nodes may be nearer to each other than rounding. A
+// polygon without area has no direction: area and length are 0. O(sides), but for the
+// search of a grain among those seen already, O(sides^2).
 void throat_polygon_fill(struct throat_polygon *polygon, const struct network *network,
                          const struct throat_sides *sides, int throat);
 

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Throat by throat, each on one thread with room of its own: polygon of the grains,
-// then what its section conducts, or at which radius gas enters it.
+// Throat by throat, each on one thread with room of its own for `most` sides, so that
+// the number of threads changes nothing. Of each throat
+//     throat_polygon_fill   the polygon of the grains around it, from its faces,
+// and then one of
+//     section_shape         what the open section between them conducts,
+//     entry_radius          the radius at whose capillary pressure gas enters it.
+// A throat that the section closes, though it has a radius, conducts as a cylinder
+// (as_cylinder); one without a radius too conducts nothing: all three numbers are 0.
+//
+// Entry radii replace throat_radius, which as_cylinder reads: who wants both asks for
+// the shapes first, as tessellate does. They only widen a throat: the disc of its
+// clearance is free of grains in any case, and the iteration says 0 where it fails.
 #include "network/throat_shapes.h"
 
 #include "basics/memory.h"

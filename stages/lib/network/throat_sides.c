@@ -1,7 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each corner of a face is the start of one throat; a counting sort by throat, in the
-// order of the faces, gives compressed rows. Finding the throats is the costly part and
-// is shared among threads; which rows come out does not depend on their number.
+// Each corner of a face is the start of one throat, which leads to the next corner of
+// the loop. A counting sort by throat, in the order of the faces, gives compressed
+// rows:
+//     find_throats   throat[k] of every corner k, by face_throat (the costly part,
+//                    shared among threads: each writes to places of its own);
+//     counting       offset[t + 2] = sides of throat t, then summed to where t begins;
+//     filling        each side goes to the place offset[t + 1], which moves on by one,
+// so that in the end the sides of t are offset[t] .. offset[t + 1] - 1, rising faces.
+// Neither the rows nor the face that is refused, the first without a throat, depend on
+// the number of threads. O(corners x throats at a node).
+//
+// throat_side tells which way the loop of the face leads along the throat: by the two
+// nodes, and of a throat from a node to its own image by the images of the corners.
 #include "network/throat_sides.h"
 
 #include "basics/memory.h"
@@ -26,6 +36,7 @@ static int find_throats(const struct network *network, int32_t *throat)
     return missing;
 }
 
+// Names the two nodes of the first gap in the loop of FACE, which has one.
 static enum status refuse_face(const struct network *network, const int32_t *throat,
                                int face, struct reason *reason)
 {
@@ -81,6 +92,8 @@ void throat_sides_free(struct throat_sides *sides)
     *sides = (struct throat_sides){0};
 }
 
+// Positions are those of the corners, not of the nodes: in a box that repeats, the ends
+// of the throat must be in the same repetition as the grains of the face.
 struct throat_side throat_side(const struct network *network,
                                const struct throat_sides *sides, int throat, int64_t k)
 {

@@ -11,7 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-// What --help and the like print is lost on a full disk; nobody else looks.
+// What --help and the like print is lost on a full disk; nobody else looks. _exit, as
+// this runs at exit already.
 static void flush_standard_output(void)
 {
     if (!fflush(stdout) && !ferror(stdout)) return;

@@ -7,7 +7,7 @@
 
 #include <argp.h>
 
-// A row of each program's table of options.
+// A row of each program's table of options, before the row of zeros that ends it.
 #define VERSION_OPTION                                                                 \
     {                                                                                  \
         "version", 'V', NULL, 0, "Print program version", -1                           \

@@ -3,6 +3,12 @@
 // temperature; air_vapour_pressure comes last, as relative_humidity needs the
 // saturation pressure:
 //     air_vapour_pressure = relative_humidity * saturation_pressure.
+//
+// Order matters twice. conditions_share copies what the scene says into the section
+// before the table fills the struct, so a stage cannot tell the two apart;
+// conditions_complete notes in `given` what was given before it fills in the rest, so
+// that conditions_describe and conditions_note can tell the user what is not the
+// liquid's own.
 #include "parameters/conditions.h"
 
 #include <math.h>
@@ -136,6 +142,7 @@ enum status conditions_complete(struct conditions *conditions, unsigned needed,
     return complete_air(conditions, reason);
 }
 
+// The message begins with "STAGE.KEY", as those of parameters_fill do.
 void conditions_require(struct conditions *conditions, unsigned needed,
                         const char *stage)
 {
@@ -144,6 +151,7 @@ void conditions_require(struct conditions *conditions, unsigned needed,
     if (status) die(status, "%s.%s", stage, reason.text);
 }
 
+// Cut where TEXT is full; never beyond SIZE.
 static void append(char *text, size_t size, const char *more)
 {
     const size_t length = strlen(text);

@@ -43,6 +43,8 @@ void conditions_share(json_t *section, const struct parameter *table,
 // with the key: a temperature below 200 K; a property with its bit in NEEDED that is
 // not known, or not at this temperature; humidity of another liquid than water, or
 // beside the vapour pressure. NEEDED has bit k for property k (enum fluid_property).
+// What was given stands, whatever the liquid; its bit is then set in `given`. Reads no
+// file and prints nothing.
 enum status conditions_complete(struct conditions *conditions, unsigned needed,
                                 struct reason *reason);
 
@@ -52,7 +54,8 @@ void conditions_require(struct conditions *conditions, unsigned needed,
 
 // One line into TEXT (SIZE bytes), which is returned: the liquid by name, temperature,
 // and those properties with their bit in SHOWN; beside a given one also the liquid's
-// own. For the model text of artifacts: what the drying was done with, by name.
+// own. For the model text of artifacts: what the drying was done with, by name. The
+// text is cut at SIZE.
 const char *conditions_describe(const struct conditions *conditions, unsigned shown,
                                 char *text, size_t size);
 
@@ -65,6 +68,26 @@ void conditions_note(const struct conditions *conditions, unsigned needed);
 // A stage takes those rows whose quantities it needs; all are `shared`, so a scene may
 // give them once. AT is where struct conditions lies in the stage's parameter struct;
 // MOST is the largest contact angle, degrees, that its model can take.
+//
+//     macro                key                  unit      where it is null
+//     FLUID_ROWS           fluid                choice    never: "water"
+//                          temperature          K         never: 293.15
+//     VAPOUR_ROWS          gas_pressure         Pa        never: 1e5
+//                          saturation_pressure  Pa        the fluid's
+//                          relative_humidity    1         air_vapour_pressure holds
+//                          air_vapour_pressure  Pa        by relative_humidity, else 0
+//                          diffusivity          m2 s-1    the fluid's, in air
+//                          molar_mass           kg mol-1  the fluid's
+//     LIQUID_DENSITY_ROW   liquid_density       kg m-3    the fluid's
+//     VISCOSITY_ROW        viscosity            m2 s-1    the fluid's, kinematic
+//     SURFACE_TENSION_ROW  surface_tension      N m-1     the fluid's
+//     CONTACT_ANGLE_ROW    contact_angle        degree    never: 0
+//
+// A stage that leaves a macro out must begin its struct with conditions_unset: no row
+// fills those members then. FLUID_ROWS is the one that every stage with conditions
+// needs, for without liquid and temperature nothing can be looked up. An angle of 90
+// degrees or more leaves no suction: stages that need one take less. What a scene says
+// of a key that no row of the stage has is checked, too, and then left alone.
 #define CONDITION_AT(at, member) (at) + offsetof(struct conditions, member)
 // clang-format off
 #define FLUID_ROWS(at) \

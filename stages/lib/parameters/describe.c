@@ -5,6 +5,9 @@
 //
 // Both come from the same rows, so that help and schema cannot contradict what
 // parameters_fill accepts. docs/reference.md is made from them, too.
+//
+//     KEY=DEFAULT UNIT  [choices]  [rule] *     in --help; (required): no default
+//             text, wrapped
 #include "parameters/parameters.h"
 
 #include <stdio.h>
@@ -100,6 +103,7 @@ void parameters_print(const struct parameter *table, FILE *stream)
     print_rows(table, "", stream);
 }
 
+// "a|b" is ["a", "b"].
 static json_t *split_choices(const char *choices)
 {
     json_t *names = json_array();
@@ -110,6 +114,7 @@ static json_t *split_choices(const char *choices)
     }
 }
 
+// A new object {"type": TYPE} with the bound of PARAMETER.
 static json_t *bounded(const struct parameter *parameter, const char *type)
 {
     json_t *schema = json_pack("{s:s}", "type", type);
@@ -122,6 +127,7 @@ static json_t *bounded(const struct parameter *parameter, const char *type)
     return schema;
 }
 
+// Takes ITEMS over.
 static json_t *three_of(json_t *items)
 {
     return json_pack("{s:s,s:o,s:i,s:i}", "type", "array", "items", items, "minItems",

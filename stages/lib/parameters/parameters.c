@@ -8,6 +8,11 @@
 // on the command line dots. Effective parameters are built beside the struct, entry by
 // entry; they go into the artifact, so two runs with equal effective parameters are
 // equal.
+//
+// A value in steps: found by its path, or parsed from the default; made a number of its
+// type (as_typed); null let through where it may be; type; bounds; stored. What is
+// of another type is reported and not stored. Types, and how they lie in the struct,
+// stand at enum parameter_type; sizes beyond 1e150 are refused whatever the bound.
 #include "parameters/parameters.h"
 
 #include "basics/memory.h"
@@ -51,7 +56,8 @@ char *json_canonical(const json_t *json)
 }
 
 // As the user wrote it: numbers with no more digits than they need. The fewest digits
-// from 6 on that read back as the same number; 0.1 stays 0.1.
+// from 6 on that read back as the same number; 0.1 stays 0.1. At most eleven tries, for
+// messages only.
 static char *as_written(const json_t *value)
 {
     for (int digits = 6; digits < 17; digits++) {
@@ -80,7 +86,7 @@ static void complain(struct filling *filling, const char *key, const char *rule,
 
 // ---- one value ----------------------------------------------------------------------
 
-// The place of NAME among "a|b|c", or -1.
+// The place of NAME among "a|b|c", or -1. Whole words only: "in" is not "inviscid".
 static int choice_index(const char *choices, const char *name)
 {
     const size_t length = strlen(name);
@@ -242,7 +248,8 @@ static void store(struct filling *filling, const struct parameter *parameter,
 
 // ---- the whole section --------------------------------------------------------------
 
-// NULL where there is none; walks along the dots of KEY.
+// NULL where there is none; walks along the dots of KEY. The reference is the
+// section's. A key that leads through something else than an object is not there.
 static json_t *find(const json_t *section, const char *key)
 {
     char part[128];
@@ -294,6 +301,7 @@ static bool is_prefix(const struct parameter *table, const char *path)
     return false;
 }
 
+// Of the table; rows of named objects have their own (take_rows).
 static bool is_key(const struct parameter *table, const char *path)
 {
     for (const struct parameter *p = table; p->key; p++)
@@ -445,6 +453,7 @@ void named_rows_free(struct named_rows *rows)
     *rows = (struct named_rows){0};
 }
 
+// Rows are few: a linear search.
 int named_row(const struct named_rows *rows, const char *name)
 {
     for (int k = 0; k < rows->count; k++)
@@ -452,7 +461,9 @@ int named_row(const struct named_rows *rows, const char *name)
     return -1;
 }
 
-// Defaults are JSON texts, so that a default takes the same way as a value.
+// Defaults are JSON texts, so that a default takes the same way as a value. The
+// value goes into the effective ones even after a complaint: the program ends before
+// anyone reads them.
 static void take(struct filling *filling, const struct parameter *parameter,
                  const json_t *section, json_t *effective, void *parameters)
 {
@@ -501,6 +512,7 @@ static json_t *fill(struct filling *filling, json_t *section, void *parameters)
     return effective;
 }
 
+// The section is not changed.
 json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters)
 {

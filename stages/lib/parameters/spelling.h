@@ -3,7 +3,7 @@
 #define CRAQUELURE_SPELLING_H
 
 // The least number of letters to insert, delete or change to turn A into B
-// (Levenshtein); only the first 127 letters of each count.
+// (Levenshtein); only the first 127 letters of each count. Bytes are letters.
 int edit_distance(const char *a, const char *b);
 
 #endif

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside of the incremental insertion only: a triangulation under way, and which cells
-// a point takes away.
+// a point takes away. The places of cells that are gone are used again. `point` and
+// `box` are the caller's and must stay as they are.
 #ifndef CRAQUELURE_INSERTION_H
 #define CRAQUELURE_INSERTION_H
 
@@ -25,7 +26,9 @@ struct edge {
     int32_t cell;
 };
 
-// It owns CELL, CAVITY, RIM, UNUSED and EDGE; they only grow.
+// It owns CELL, CAVITY, RIM, UNUSED and EDGE; they only grow, and growing moves them:
+// no pointer into CELL outlives a new cell. n_test and n_exact count sphere tests, and
+// those that took exact numbers.
 struct insertion {
     const struct weighted_point *point;
     const struct wall_box *box; // NULL: no walls
@@ -47,8 +50,8 @@ struct insertion {
 // plane.
 int orientation(const struct weighted_point *const p[4]);
 
-// That of the corners of a cell with point E in place of corner
-// K; a wall lies along its normal.
+// That of the corners of a cell with point E in place of corner K: 1 where E is on the
+// same side of the facet opposite K as corner K is. A wall lies along its normal.
 int orientation_with(const struct insertion *insertion, const int32_t vertex[4], int k,
                      int32_t e);
 

@@ -2,8 +2,17 @@
 // Power centres of cells, four cells at a time. With rows r_k from the last vertex to
 // the other three and weights w, the centre c (relative to the last vertex) solves
 //     2 r_k.c = |r_k|^2 - w_k + w_last,
-// by Cramer's rule. `error` bounds the rounding of each coordinate; where the
-// determinant is mere rounding it is infinite, and takes() asks exact arithmetic.
+// by Cramer's rule: c = sum of right_k across_k / determinant, with right_k half of the
+// right side and across_k = r_k+1 x r_k+2. At a wall the row is its outward normal and
+// right_k the distance to its plane, for the centre is on the wall.
+//
+// `error` bounds the rounding of each coordinate. With size_k the largest component of
+// r_k and terms_k = |r_k|^2 + |w_last - w_k|,
+//     slack = 16 eps size_0 size_1 size_2                (error of the determinant)
+//     error = (8 eps sum of terms_k size_k+1 size_k+2 + far slack)
+//             / (|determinant| - slack)  + 8 eps far,    far = largest of |c|.
+// Where the determinant is at most 2 slack, mere rounding, it is infinite, and takes()
+// asks exact arithmetic. Infinite cells have no centre: their error is -1.
 #include "geometry/triangulation/insertion_cell.h"
 
 #include "basics/simd.h"
@@ -53,8 +62,8 @@ static inline struct vector_of_four vertices(const struct weighted_point *point,
         (double4){p[0]->at.z, p[1]->at.z, p[2]->at.z, p[3]->at.z} - from.z};
 }
 
-// For the rows r_k from the last vertex to the other three, 2 r_k . c = |r_k|^2 - w_k +
-// w. The bound is of each coordinate and generous.
+// No lane sees another, so a centre does not depend on which cells it is found with.
+// The bound is generous.
 static void find_four_centres(const struct weighted_point *point,
                               struct live_cell *const cell[4])
 {
@@ -97,13 +106,13 @@ static void find_four_centres(const struct weighted_point *point,
     }
 }
 
+// One negative vertex, which may be a wall, gives the bits of all four their sign.
 static bool is_infinite(const struct live_cell *cell)
 {
     return (cell->vertex[0] | cell->vertex[1] | cell->vertex[2] | cell->vertex[3]) < 0;
 }
 
-// The same for one cell with walls: the row of a wall is its normal, and what is right
-// of it the distance, for the centre is on the wall.
+// The same for one cell with walls; there are few of them, so they go one by one.
 static void find_walled_centre(const struct weighted_point *point,
                                const struct wall_box *box, struct live_cell *cell)
 {
@@ -152,6 +161,8 @@ static bool has_walls(const struct live_cell *cell)
            cell->vertex[2] <= FIRST_WALL;
 }
 
+// Cells without walls and infinite vertex are gathered by four. A rest of one to three
+// is filled up with its first cell, which is then found more than once, alike.
 void find_centres(const struct weighted_point *point, const struct wall_box *box,
                   struct live_cell *cells, const int32_t *which, int count)
 {

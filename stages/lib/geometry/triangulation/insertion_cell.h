@@ -24,7 +24,9 @@ static inline struct corner_between wall_corner(const struct wall_box *box,
         .plane = component(wall % 2 ? box->upper : box->lower, axis)};
 }
 
-// Neighbour k is opposite vertex k.
+// Neighbour k is opposite vertex k. A finite cell is positively oriented. In a box
+// walls are among the first three vertices only: the last is the point that made the
+// cell.
 struct live_cell {
     int32_t vertex[4], neighbour[4];
     struct vector at; // centre of power, from the last vertex

@@ -1,8 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Orientation and power tests: in doubles where an error bound decides, otherwise in
-// exact arithmetic (exact.h). Ties are decided by a symbolic perturbation of the
-// weights in lexicographic order of the points (Devillers and Teillaud 2011), so that
-// co-spherical grains, as on lattices, always give the same cells.
+// The two questions of an insertion: which way four points turn, and whether point e
+// takes a cell away. In doubles where an error bound decides, otherwise in exact
+// arithmetic (exact.h). With a, b, c from p[3] to the others,
+//     orientation:  a . (c x b),  sure beyond 32 eps max|a| max|b| max|c|
+// (largest components). Of a wall the vector is its normal: seen from a grain, a sphere
+// without limit lies along that.
+//
+// takes_exactly answers, in this order:
+//     seen                  yes: already in the cavity;
+//     cell beyond walls     no;
+//     a wall at a corner    exactly, in the limit of that sphere;
+//     infinite              by the side of its finite facet; in the plane of this facet
+//                           as the finite cell this side of it does;
+//     mirror images         a tie, known without arithmetic;
+//     else                  the exact sign of the power.
+// Ties are decided by a symbolic perturbation of the weights: each is less by a little,
+// by far more for each lexicographically later point (Devillers and Teillaud 2011). So
+// co-spherical grains, as on lattices, always give the same cells, in any order.
 #include "geometry/triangulation/exact.h"
 #include "geometry/triangulation/insertion.h"
 
@@ -57,7 +71,8 @@ static int orientation_between(const struct insertion *insertion,
     return k % 2 ? -turn : turn;
 }
 
-// With point E in place of corner K.
+// That of the corners with point E in place of corner K. Only a triangulation between
+// walls, which has a box, has walls among its corners.
 int orientation_with(const struct insertion *insertion, const int32_t vertex[4], int k,
                      int32_t e)
 {
@@ -69,6 +84,7 @@ int orientation_with(const struct insertion *insertion, const int32_t vertex[4],
     return orientation(p);
 }
 
+// Lexicographic order: that of the perturbation, and so independent of the numbering.
 static bool comes_before(struct vector a, struct vector b)
 {
     if (a.x != b.x) return a.x < b.x;
@@ -115,7 +131,8 @@ static bool mirror(const struct weighted_point *a, const struct weighted_point *
            component(c->at, axis) + component(d->at, axis);
 }
 
-// Nearly all that exact arithmetic would be needed for where grains are reflected.
+// Whether two pairs among five points are mirror images of each other. Nearly all that
+// exact arithmetic would be needed for where grains are reflected.
 static bool is_mirrored(const struct weighted_point *const p[5])
 {
     for (int without = 0; without < 5; without++) {
@@ -129,6 +146,8 @@ static bool is_mirrored(const struct weighted_point *const p[5])
     return false;
 }
 
+// For cells with a wall among their corners. Walls have no weight to perturb: a tie is
+// decided by the grains alone.
 static bool takes_between(struct insertion *insertion, const int32_t vertex[4],
                           int32_t e)
 {

@@ -3,11 +3,9 @@
 // order:
 //     locate       walk to the cell that holds e,
 //     find_cavity  all cells whose sphere takes e (power of e to the cell's centre
-//     below
-//                  that of its vertices), and the facets around them (`rim`),
+//                  below that of its vertices), and the facets around them (`rim`),
 //     fill_cavity  one new cell for each facet of the rim with e, linked by a hash
-//     table of
-//                  the directed edges of the rim.
+//                  table of the directed edges of the rim.
 // Cells with the vertex INFINITE close the hull; between walls, negative vertices name
 // walls as limit planes (triangulation_in_walls.h), which CGAL does not offer.
 // Decisions are exact (insertion_predicates.c), so the result does not depend on the

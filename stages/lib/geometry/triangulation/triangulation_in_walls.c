@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From points in any order to cells: walls that are not there are put beyond all
-// points, farther than their extent, where they take no part; points are inserted in
-// the order of insertion_order.h, and the vertices of the cells are numbered back.
-// Walls have negative numbers and stay as they are.
+// From points in any order to cells between walls:
+//     box_around            six walls: those asked for at 0 and `upper`, the others
+//                           beyond all points, where they only end the triangulation;
+//     insertion_order       an order in which inserting is fast;
+//     triangulate_between   cells of points and all six walls, without those at walls
+//                           that are not asked for;
+//     numbering back        vertices k of the ordered points become order[k].
+// Walls have negative numbers, -1 to -6, and stay as they are. A wall that is not asked
+// for is farther from all points than they extend, by a length of 1: hence the advice
+// that lengths be of the order of 1. There must be a point: the first one makes the
+// first eight cells. O(n log n) for points that fill space.
 #include "geometry/triangulation/triangulation_in_walls.h"
 
 #include "basics/memory.h"
