@@ -54,6 +54,7 @@ struct extremes {
     size_t count; // of those that differ at all
 };
 
+// All of it before anything is judged, as the tolerance is of the largest value.
 static struct extremes find_extremes(const struct dataset_values *one,
                                      const struct dataset_values *other)
 {
@@ -74,9 +75,12 @@ static void compare_values(struct comparison *comparison, const char *name, bool
                            const struct dataset_values *other)
 {
     if (!have_one_shape(one, other)) {
-        differs(comparison, "%s: %llu and %llu rows", name,
-                (unsigned long long)one->extent[0],
-                (unsigned long long)other->extent[0]);
+        if (one->extent[0] == other->extent[0])
+            differs(comparison, "%s: rows of another shape", name);
+        else
+            differs(comparison, "%s: %llu and %llu rows", name,
+                    (unsigned long long)one->extent[0],
+                    (unsigned long long)other->extent[0]);
         return;
     }
     const struct extremes extremes = find_extremes(one, other);

@@ -27,16 +27,19 @@ static int compare_gaps(const void *a, const void *b)
     return (p->gap > q->gap) - (p->gap < q->gap);
 }
 
-// Pairs of grains up to GAP apart, the nearest first; the caller frees them.
+// Pairs of solid grains up to GAP apart, the nearest first; the caller frees them.
 static struct near_pair *pairs_by_gap(const struct packing *packing, double gap,
                                       int *count)
 {
-    int32_t(*pair)[2] = neighbour_pairs(packing, gap, count);
-    struct near_pair *near = NEW_ARRAY(struct near_pair, *count);
-    for (int k = 0; k < *count; k++) {
+    int all;
+    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &all);
+    struct near_pair *near = NEW_ARRAY(struct near_pair, all);
+    *count = 0;
+    for (int k = 0; k < all; k++) {
         const int i = pair[k][0], j = pair[k][1];
+        if (is_auxiliary(packing, i) || is_auxiliary(packing, j)) continue;
         const double sum = packing->radius[i] + packing->radius[j];
-        near[k] =
+        near[(*count)++] =
             (struct near_pair){norm(nearest_image(packing, i, j)) / sum - 1, {i, j}};
     }
     free(pair);
@@ -54,7 +57,7 @@ static double joining_gap(const struct packing *packing, int wanted, double most
     int *piece = NEW_ARRAY(int, n), *size = NEW_ARRAY(int, n);
     for (int i = 0; i < n; i++) {
         piece[i] = i;
-        size[i] = 1;
+        size[i] = !is_auxiliary(packing, i);
     }
     double gap = NAN;
     for (int k = 0; k < count && isnan(gap); k++) {
@@ -100,7 +103,10 @@ struct bond_facts bond_facts(const struct packing *packing)
     facts.supported = count_supported(packing, holds);
     free(holds);
     count_pieces(packing, &facts);
-    const int wanted = (int)ceil(MOST_GRAINS * n);
+    int solid = 0;
+    for (int i = 0; i < n; i++)
+        solid += !is_auxiliary(packing, i);
+    const int wanted = (int)ceil(MOST_GRAINS * solid);
     static const double within[] = {0.02, 0.1, 0.5}; // wider ones find many more pairs
     for (int k = 0; k < 3 && isnan(facts.gap) && facts.largest < wanted; k++)
         facts.gap = joining_gap(packing, wanted, within[k]);

@@ -5,6 +5,14 @@
 // that pack would make; measures; judgements, the packing first
 // (geometry/packing_check.h), then bonds, grains that touch nothing, defaults of
 // another size, weight. The status is 1 if any finding is worse than a note.
+//
+// Lengths become metres before anything is measured (import.scale, import.diameters),
+// as pack does it; an artifact keeps its own bonds. Contacts are pairs within
+// touching_gap, of the sum of the radii. The material is only for the suggestions and
+// the weight: no other finding depends on it. A liquid without a known surface tension
+// at the temperature ends the call before grains are read.
+//
+// Without -o it tells people, with -o it writes schemas/check.json; both by tell.c.
 #include "artifacts/artifact.h"
 #include "artifacts/read_grains.h"
 #include "basics/memory.h"
@@ -65,7 +73,8 @@ static const struct stage stage = {
              "it is hardly intended.",
     .tells = true};
 
-// The defaults of dem-replay are those of grains of 500 nm.
+// The defaults of dem-replay are those of grains of 500 nm. From a third to three times
+// is taken for the same size.
 static void judge_defaults(const struct packing_facts *facts, struct findings *findings)
 {
     const double usual = 250e-9, ratio = facts->median / usual;
@@ -77,6 +86,7 @@ static void judge_defaults(const struct packing_facts *facts, struct findings *f
         ratio);
 }
 
+// Loose grains are no error: a loose packing has them. A single grain is not loose.
 static void judge_free(const struct packing_facts *facts, struct findings *findings)
 {
     if (!facts->free || facts->n < 2) return;
@@ -84,7 +94,8 @@ static void judge_free(const struct packing_facts *facts, struct findings *findi
                 "%d of %d grains touch neither grain nor wall", facts->free, facts->n);
 }
 
-// Below this share of the capillary forces weight changes little.
+// Below this share of the capillary forces weight changes little. The larger of both
+// counts: fmax passes over a NAN.
 static void judge_weight(const struct bond_numbers *weight, struct findings *findings)
 {
     const double most = fmax(weight->grain, weight->body);
@@ -95,6 +106,8 @@ static void judge_weight(const struct bond_numbers *weight, struct findings *fin
                 weight->grain < most ? "the body" : "a grain", most);
 }
 
+// Without grains there is nothing to judge but that. The worst come first whatever the
+// order here (add_finding).
 static struct findings judge(const struct packing *packing,
                              const struct packing_facts *facts,
                              const struct bond_facts *bonds,
@@ -112,7 +125,8 @@ static struct findings judge(const struct packing *packing,
     return findings;
 }
 
-// Text has no bonds: those that pack would make.
+// Text has no bonds: those that pack would make. A dump is "text", too (read_grains.c);
+// artifacts without bonds are left as they are.
 static void bond_text(struct packing *packing, const struct contacts *contacts,
                       const json_t *inputs)
 {
@@ -159,7 +173,8 @@ int main(int argc, char **argv)
     if (!invocation.tells)
         finish_json(checked_json(&checked, wrong), &invocation, json_incref(inputs),
                     "grains as spheres, their contacts and bonds\n"
-                    "left out: the liquid, forces, weight\n");
+                    "left out: the liquid, forces; of weight whether surface tension "
+                    "can bear it\n");
 
     json_decref(inputs);
     free((void *)contacts.pair);

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From artifacts to struct run and struct liquid. A schema checks types and shapes;
-// here is checked what relates rows to each other: bonds never heal, and nothing breaks
-// after the last load.
+// From artifacts to struct run and struct liquid. A schema checks types, shapes, ranges
+// and order of rows; here is checked what relates datasets to each other (65, with the
+// dataset and row):
+//     /cracks/bond    no bond breaks twice, nor after the weight alone broke it;
+//     /cracks/time    none after the end, the last row of /history/time;
+//     /history/settled   is there if loads did not come to rest;
+//     /history/time      of a drying: has a row.
+// A crack belongs to the load whose time is the first that is not before its own. Both
+// rise, so one walk along them counts the cracks under loads that did not come to rest;
+// it needs check_cracks to have passed, or it would walk beyond the last load.
+//
+// Optional: /weight_cracks/bond (none), /particles/held (NULL: not known).
 #include "read.h"
 
 #include "basics/memory.h"
@@ -22,6 +31,9 @@ static void read_unsettled(struct run *run, const struct artifact *response,
                 input_name(response->path));
         return;
     }
+    if (n_time == 0 && run->n_crack > 0)
+        die(STATUS_BAD_DATA, "%s: /history/time: has no row, and there are cracks",
+            input_name(response->path));
     uint8_t *settled = artifact_get(response, "/history/settled", NULL);
     for (int k = 0; k < n_time; k++)
         run->n_unsettled += !settled[k];

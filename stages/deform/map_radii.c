@@ -169,6 +169,7 @@ enum status map_radii(const struct network *before,
         free(renewed->throat_volume);
         renewed->throat_volume = NULL;
     }
+    if (!before->throat_diffusion) forget_throat_shapes(renewed); // cylinders stay so
     places_free(&places);
     free_middles(&old);
     free(was);

@@ -9,8 +9,20 @@
 //     breakthrough_share  = throats (or nodes) with an entry pressure up to the highest
 //                           before breakthrough, over all that take part.
 //
-// Everything is quasi-static: gas enters the widest throat that it touches, and
-// pressures are those of capillary equilibrium.
+// Everything is quasi-static: gas enters the widest throat that it touches (under
+// gravity the one of least entry pressure), and pressures are those of capillary
+// equilibrium.
+//
+// It reads a network and writes it again, with what has come of it:
+//     /events    (n_event) throat, node, pressure Pa, saturation after the event
+//     /throats   (n_throat) event, cluster;   /nodes (n_node) event
+//     /clusters  (n_cluster) throats, volume m3, trapped: the liquid that stays
+//     /curve     (n_curve) pressure, saturation: pressures higher than all before
+//     /transport (n) saturation and four relative properties, if asked for
+//
+// Traps: `rule` says what gas must enter, `liquid_in` what loses liquid when it does;
+// any two go together. Conditions are completed before the network is read, so a
+// liquid without surface tension is told at once.
 #include "artifacts/artifact.h"
 #include "basics/memory.h"
 #include "basics/status.h"
@@ -101,7 +113,9 @@ static double share_up_to(const struct network *network, const struct entry *ent
 }
 
 // Events are counted from 0; `breakthrough` is how many there were before gas touched
-// the outlet, below 0 if it never did.
+// the outlet, below 0 if it never did. Without a breakthrough its numbers are left out,
+// rather than given a value that looks like one. Trapped volume is a share of what
+// stays, so that trapped_saturation is over the same volume as residual_saturation.
 static void put_summary(struct artifact *artifact, const struct network *network,
                         const struct invasion_conditions *conditions,
                         const struct invasion *invasion, const struct outcome *outcome,
@@ -193,7 +207,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
         text, size,
         "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
         "touches that takes the least pressure, of equals the shorter, then the "
-        "higher\n"
+        "smaller, then the higher\n"
         "liquid is held by %s\n"
         "%s\n%s"
         "%s, contact angle %.6g degrees\n"
@@ -213,7 +227,7 @@ static const char *describe(const struct invade_parameters *parameters, char *te
     return text;
 }
 
-// The density counts only under gravity.
+// The density counts only under gravity; entry pressures always need the tension.
 static unsigned needed_properties(const struct invade_parameters *parameters)
 {
     return 1u << FLUID_SURFACE_TENSION |

@@ -96,8 +96,9 @@ enum status add_layer(const struct domain *domain, int wall, struct packing *pac
     const size_t most = (size_t)packing->n_particle + (size_t)(count[0] * count[1]);
     packing->position = reallocate(packing->position, most, sizeof *packing->position);
     packing->radius = reallocate(packing->radius, most, sizeof *packing->radius);
+    const bool all_solid = !packing->kind;
     packing->kind = reallocate(packing->kind, most, sizeof *packing->kind);
-    memset(packing->kind, GRAIN_SOLID, (size_t)packing->n_particle);
+    if (all_solid) memset(packing->kind, GRAIN_SOLID, (size_t)packing->n_particle);
     for (int i = 0; i < count[0]; i++)
         for (int j = 0; j < count[1]; j++) {
             struct vector place = place_of(packing, axis, count, i, j);

@@ -2,6 +2,11 @@
 // A slab out of the middle of a thicker packing: grains with their centres between two
 // heights stay, and the box ends on their surfaces. Walls order the grains beside them,
 // and what then cracks follows the crystals; a cut leaves a rough floor and top.
+//
+//     stays:  lower <= z <= upper  of the centre, each end only where it is given,
+//     box:    from the lowest to the highest surface of grains that stay.
+// Grains are compacted in place, in their order. Bonds are dropped, since their grains
+// have other numbers then; they are made anew from contacts (main.c).
 #include "pack.h"
 
 #include <math.h>
@@ -24,6 +29,7 @@ enum status cut_slab(double lower, double upper, struct domain *domain,
         const double radius = packing->radius[i];
         if (at.z < lower || at.z > upper) continue;
         packing->position[n] = at;
+        if (packing->kind) packing->kind[n] = packing->kind[i];
         packing->radius[n++] = radius;
         low = fmin(low, at.z - radius);
         high = fmax(high, at.z + radius);

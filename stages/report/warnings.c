@@ -4,6 +4,22 @@
 //
 // Each threshold stands where it is used. A number that an artifact does not have is
 // NAN, and no comparison with it holds (but !=, hence isnan): no warning.
+//
+// What each rests on; a limit behind the sign:
+//
+//     response   steps_unsettled > 0, and mean.unsettled.cracks of crackstats;
+//                gone > 0; snaps > 0; bond_number_body or _grain >= WEIGHT_MATTERS
+//                without gravity; weight_cracks > 0; weight_unbalanced_ratio >= 1e-4
+//     forces     force_scale != 1; interpolation_error > 0.1; field_error > 0.05
+//     drying     shut_throats > 0; enclosed_throats > 0; balance_error > 1e-6;
+//                residual or liquid_residual > 1e-3; throats that refilled (body.c)
+//     packing    max_overlap > 0.1, of the smaller radius
+//     check      findings worse than a note, in its own words
+//     flow       imbalance > 1e-6, of the flux; closed_throats > 0; pockets > 0
+//     motion     largest_overlap > 0.05, of the mean radius; time_step > its limit
+//
+// Names are those of /summary of each artifact; all are numbers without a unit but the
+// two time steps, of which the ratio is told.
 #include "facts.h"
 #include "geometry/bond_numbers.h"
 #include "html.h"
@@ -12,6 +28,7 @@
 #include <stdarg.h>
 #include <string.h>
 
+// NAN where there is no such artifact, or it does not say.
 static double summary_of(const struct run *run, enum kind kind, const char *name)
 {
     char whole[80];
@@ -37,6 +54,8 @@ static void warn(FILE *page, const char *format, ...)
     fputs("</li>\n", page);
 }
 
+// Loads, not grains, are unsettled. What broke under them is known only where
+// crackstats was run.
 static void warn_of_rest(FILE *page, const struct run *run)
 {
     const double unsettled = summary_of(run, RESPONSE, "steps_unsettled");
@@ -56,6 +75,8 @@ static void warn_of_rest(FILE *page, const struct run *run)
     if (snaps > 0) warn(page, "The body snapped through or buckled %.0f times.", snaps);
 }
 
+// fmax takes the one that is known. Where gravity is in the run its Bond number is no
+// warning.
 static void warn_of_weight(FILE *page, const struct run *run)
 {
     const double bond = fmax(summary_of(run, RESPONSE, "bond_number_body"),
@@ -76,6 +97,7 @@ static void warn_of_weight(FILE *page, const struct run *run)
              rest);
 }
 
+// A factor of 1 is the physical force.
 static void warn_of_forces(FILE *page, const struct run *run)
 {
     const double factor = summary_of(run, FORCES, "force_scale"),
@@ -90,10 +112,13 @@ static void warn_of_forces(FILE *page, const struct run *run)
              between);
     if (field > 0.05)
         warn(page,
-             "Between snapshots the suction is off by %.2g of itself, on average.",
+             "Between snapshots the suction is off by %.2g of the capillary pressure, "
+             "on "
+             "average.",
              field);
 }
 
+// Residuals are those of vapour and of viscous liquid; the larger counts.
 static void warn_of_liquid(FILE *page, const struct run *run,
                            const struct shown_body *body)
 {
@@ -132,6 +157,7 @@ static void warn_of_grains(FILE *page, const struct run *run)
     }
 }
 
+// All three are in every flow, so none is asked for first.
 static void warn_of_flow(FILE *page, const struct artifact *flow)
 {
     if (!flow) return;
@@ -145,6 +171,7 @@ static void warn_of_flow(FILE *page, const struct artifact *flow)
     if (pockets > 0) warn(page, "%.0f sets of pores have no outlet.", pockets);
 }
 
+// The overlap is over the mean radius here, in a packing over the smaller one.
 static void warn_of_motion(FILE *page, const struct artifact *motion)
 {
     if (!motion) return;

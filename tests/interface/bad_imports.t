@@ -113,7 +113,7 @@ imported("a count of atoms that is none is refused", dump(count="many"),
 imported("a count of atoms that lies is refused", dump("1 1 1 1 1", count=99999999),
          "line 11: must be a grain: fewer than .*")
 for settings, line in [
-        (["frame=1"], "grains: pack.frame: must be below 1, the frames there are, got 1"),
+        (["frame=1"], "grains: frame: must be below 1, the frames there are, got 1"),
         (["frame=-2"], r"pack.frame: must be from -1 to 1e\+12, got -2"),
         (["domain.cut.shape=box"],
          "pack.domain.shape: must be box, and nothing cut out, for import")]:

@@ -56,6 +56,15 @@ for program, source in [("tessellate", "packing"), ("dry", "network"),
 refused_in_shell("grains of one's own are not lost either", USAGE,
                  "echo 0 0 0 1 >grains.txt; $BIN/pack --set method=import grains.txt -o grains.txt",
                  "pack: grains.txt: is an input, and where the output goes: name another file")
+before = open("network", "rb").read()
+refused("a report over the input is refused", USAGE, ["merge-nodes", "network", "--report", "network"],
+        "--report network: is an input: name another file")
+result("the network is what it was", [] if open("network", "rb").read() == before else ["changed"])
+with open("scene.json", "w") as file:
+    file.write("{}")
+refused("an output over the scene is refused", USAGE, ["pack", "-p", "scene.json"],
+        "--params scene.json: is where the output goes: name another file", output=("-o", os.path.abspath("scene.json")))
+result("the scene is what it was", [] if open("scene.json").read() == "{}" else ["changed"])
 shutil.copy("network", "own")
 same = run(["merge-nodes", "own", "-o", "own"])
 result("a network may become another in its place", [same.stderr] if same.returncode else [])

@@ -46,6 +46,22 @@ with scratch() as folder:
     ok(same(kept, ["particles/position"]) and len(kept["bonds/particles"]) == 0,
        "an imported packing keeps its bonds when asked to")
 
+    # What goes along with grains that are imported.
+    pack("tube", "method=random_sequential", "count=40", "radius=1e-3", "domain.shape=cylinder", "domain.radius=5e-3",
+         "domain.height=1e-2", "bonds=none")
+    tube, wide = h5py.File(at("tube")), pack("wide", "method=import", "import.scale=2", "bonds=none", inputs=[at("tube")])
+    ok(all(np.allclose(wide[f"domain/bodies/{n}"][:], 2 * tube[f"domain/bodies/{n}"][:], rtol=1e-14) for n in ("lower", "upper")),
+       "the wall around them is scaled with them")
+    pack("layered", "counts=[3,3,4]", "extra_layer=true")
+    layered = h5py.File(at("layered"))
+    height = layered["particles/position"][:, 2]
+    cut = pack("cut", "method=import", f"slab.lower={np.unique(height)[1] * 0.999}", inputs=[at("layered")])
+    left = height > np.unique(height)[1] * 0.999
+    ok(0 < left.sum() < len(height) and (cut["particles/kind"][:] == layered["particles/kind"][:][left]).all(),
+       "those of a slab are what they were, solid or of the extra layer")
+    more = pack("more", "method=import", "extra_layer=true", "extra_side=-z", inputs=[at("layered")])
+    ok((more["particles/kind"][:] == 1).sum() > (layered["particles/kind"][:] == 1).sum(), "a second extra layer leaves the first what it is")
+
     # Bonds of random spheres against every pair, one by one.
     random = np.random.default_rng(7)
     position, radius = random.uniform(0, 1, (300, 3)), random.uniform(0.02, 0.06, 300)

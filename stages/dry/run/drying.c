@@ -58,7 +58,7 @@ static enum status dry_all(struct run *run, const struct drying_progress *progre
                              1 - (double)run->occupancy.n_liquid / run->n_at_start);
         if (!status) keep_if_due(run, progress ? progress->keeper : NULL);
     }
-    return status;
+    return status ? status : keep_last_pressures(run, reason);
 }
 
 // From scaled to SI. The history is cut last, as it may end within a step.

@@ -140,6 +140,17 @@ void keep_pressures(struct run *run)
         keep_pressures_once(run);
 }
 
+// Snapshots at or below stop_saturation show the end, after which no step finds them.
+enum status keep_last_pressures(struct run *run, struct reason *reason)
+{
+    if (!snapshot_is_due(run) || run->occupancy.n_liquid == 0) return STATUS_OK;
+    run->flow.wants_pressures = true;
+    const enum status status =
+        losses_find(&run->losses, &run->occupancy, &run->flow, reason);
+    if (!status) keep_pressures(run);
+    return status;
+}
+
 // Throats may refill in turn, but not endlessly.
 enum status note_idle(struct run *run, bool idle, struct reason *reason)
 {

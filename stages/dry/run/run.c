@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What all drying steps ask of a run and record of it. Between two recorded steps the
 // rate is their mean, so that the recorded rates integrate to what has evaporated.
+//
+//     saturation = total_liquid / capacity, clipped to [0, 1],
+//     rate_now   = into the drying air at this moment (0 when all is dry),
+//     mean rate  = (evaporated - step_evaporated) / (time - step_time).
+// A step is recorded with rate_now, which holds from it on. If events are then skipped,
+// that number is overwritten by the mean when the next step is recorded. All is scaled
+// (struct drying_scale) and becomes SI only where it goes into the history. `time` and
+// `evaporated` are compensated sums, as a run adds very many short intervals.
 #include "run.h"
 
 #include "basics/sorted.h"
@@ -32,10 +40,11 @@ bool goes_on(const struct run *run)
 
 bool snapshot_is_due(const struct run *run)
 {
+    const struct drying_conditions *conditions = run->conditions;
     const int next = run->recorder.history->n_pressure;
-    return run->conditions->liquid == LIQUID_VISCOUS &&
-           next < run->conditions->n_snapshot &&
-           network_saturation(run) <= run->conditions->snapshot[next];
+    return conditions->liquid == LIQUID_VISCOUS && next < conditions->n_snapshot &&
+           network_saturation(run) <=
+               fmax(conditions->snapshot[next], conditions->stop_saturation);
 }
 
 // The last step always is. Where steps were skipped, the rate recorded before them is

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a run, and what its three kinds of step share.
+// The state of a run, and what its three kinds of step share. For the files of this
+// folder only; others call dry_network (drying.h). All is scaled (struct drying_scale)
+// but the history.
 #ifndef CRAQUELURE_RUN_H
 #define CRAQUELURE_RUN_H
 
@@ -12,6 +14,8 @@
 #include "dry/liquid/occupancy.h"
 #include "history.h"
 
+// It owns its parts and arrays; drying.c makes and frees them. Parts that the kind of
+// liquid does not need are zero. The history belongs to the caller of dry_network.
 struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
@@ -59,7 +63,8 @@ bool step_is_due(struct run *run);
 // Puts the ended in ascending order.
 void sort_ended(struct run *run);
 
-// Adds a step to the history, with the changes recorded since the last.
+// Adds a step to the history, with the changes recorded since the last. Its rate is
+// that of now, which holds until the next step.
 void record_state(struct run *run);
 
 // Keeps the saturation when gas first reaches the wall opposite the open one.
@@ -77,7 +82,12 @@ enum status find_kelvin_losses(struct run *run, struct reason *reason);
 // due.
 void keep_pressures(struct run *run);
 
-// Records a step if it is due; for runs with losses.
+// Those of snapshots that are due when no step follows, with a flow of their own.
+// STATUS_NOT_CONVERGED as losses_find.
+enum status keep_last_pressures(struct run *run, struct reason *reason);
+
+// Records a step if it is due; for runs with losses. Changes come before it, ascending
+// in throats.
 void record_losses(struct run *run);
 
 // STATUS_NOT_CONVERGED with a message: liquid is left, but no throat loses any.

@@ -3,6 +3,16 @@
 // schema and every value are checked before anything is used. A child process does all
 // of that first, since a damaged file may crash the HDF5 library; what it survived the
 // program repeats. The getters come after; what they read has been checked.
+//
+// Opening in order: all bytes into memory; the signature of HDF5; in the child the
+// links (check_links.c), the attribute `schema` of the root, every dataset and
+// attribute that the schema lists (check.c) and the provenance; then once more here
+// without the checks; last the SHA-256 of the bytes, by which other artifacts name this
+// one as their input.
+//
+// A file that is empty, no HDF5, cut short, without a schema, of an unknown schema, or
+// of another kind than wanted gets a line of its own; all exit 65. Rules that no schema
+// can say are checked by the getters that know them: bodies, walls, ends of throats.
 #include "artifacts/artifact.h"
 #include "artifacts/check.h"
 #include "basics/memory.h"
@@ -19,6 +29,8 @@
 const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
                                         NULL};
 
+// HDF5 reads from IMAGE itself, not from a copy: it must outlive the file. Parameters
+// given without -p are what JSON here mostly is, so the message says how they go.
 static hid_t open_image(const char *path, const struct bytes *image)
 {
     if (image->size == 0) die(STATUS_BAD_DATA, "%s: is empty", input_name(path));
@@ -35,6 +47,8 @@ static hid_t open_image(const char *path, const struct bytes *image)
     return file;
 }
 
+// Strings of variable length are those of h5py, of fixed length those of
+// put_text_attribute. One that claims more than the file holds is damage: NULL.
 char *artifact_get_text(const struct artifact *artifact, const char *name)
 {
     const hid_t attribute = H5Aopen(artifact->file, name, H5P_DEFAULT);
@@ -68,6 +82,7 @@ static const struct {
              {"response", "crackstats"}};
 enum { KINDS = sizeof chain / sizeof *chain };
 
+// KINDS for what is not in it.
 static int place_in_chain(const char *kind)
 {
     int place = 0;
@@ -76,6 +91,8 @@ static int place_in_chain(const char *kind)
     return place;
 }
 
+// From the place of GOT up to that of WANTED; nothing is advised where WANTED comes
+// before GOT or one of them is not in the chain.
 void refuse_kind(const char *path, const char *wanted, const char *got)
 {
     char stages[100] = "";
@@ -87,6 +104,8 @@ void refuse_kind(const char *path, const char *wanted, const char *got)
         stages);
 }
 
+// schema_find goes by the name alone and would take any version: so the ids are
+// compared, and the message says which version is known. NAME NULL: any kind will do.
 static struct schema *schema_of(const struct artifact *artifact, const char *name)
 {
     const char *path = input_name(artifact->path);
@@ -174,6 +193,7 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
     return artifact;
 }
 
+// The file before the image that it reads from.
 void artifact_close(struct artifact *artifact)
 {
     if (!artifact) return;
@@ -183,6 +203,8 @@ void artifact_close(struct artifact *artifact)
     free(artifact);
 }
 
+// Class, rank and size were checked; width and byte order are converted by HDF5. Rows
+// fit into an int: check_size refuses more.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
 {
     const json_t *entry = schema_dataset(artifact->schema, name);
@@ -210,6 +232,7 @@ static bool artifact_has(const struct artifact *artifact, const json_t *entry)
     return entry && has_entry(artifact->file, entry);
 }
 
+// For those who look at any dataset alike (inspect, artdiff): NAME must be there.
 struct dataset_values artifact_get_values(const struct artifact *artifact,
                                           const char *name)
 {
@@ -238,6 +261,7 @@ bool artifact_has_number(const struct artifact *artifact, const char *name)
     return artifact_has(artifact, schema_attribute(artifact->schema, name));
 }
 
+// What is behind the last slash of NAME is the attribute, what is before it the group.
 double artifact_get_number(const struct artifact *artifact, const char *name)
 {
     char group[128];
@@ -285,6 +309,8 @@ static void get_bodies(const struct artifact *artifact, struct packing *packing)
     free(upper);
 }
 
+// /domain has three datasets of 3 values: lower, upper, periodic. Without
+// /particles/kind all are solid.
 struct packing artifact_get_packing(const struct artifact *artifact)
 {
     struct packing packing = {0};
@@ -308,6 +334,7 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     return packing;
 }
 
+// Each by itself: what is left out stays NULL, and the throat conducts as a cylinder.
 static void get_throat_shapes(const struct artifact *artifact, struct network *network)
 {
     if (artifact_has_dataset(artifact, "/throats/diffusive_conductance"))
@@ -346,7 +373,9 @@ static void check_throats_lead_away(const struct artifact *artifact,
     }
 }
 
-// The schema lets walls of bodies through, also where there are none.
+// The schema lets walls of bodies through, also where there are none. Bits 64 and 128
+// of /nodes/kind, and -7 and -8 of /faces/particles, need a body around the grains or
+// among them.
 static void check_walls(const struct artifact *artifact, const struct network *network)
 {
     unsigned walls = (1u << WALL_COUNT) - 1;
@@ -368,6 +397,8 @@ static void check_walls(const struct artifact *artifact, const struct network *n
     }
 }
 
+// The arrays are those of struct network, member by member; images come as a set of
+// three. The ends of throats are checked last, as that needs the images.
 struct network artifact_get_periodic_network(const struct artifact *artifact)
 {
     const struct schema *schema = artifact->schema;
@@ -393,6 +424,11 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
             artifact_get_number(artifact, "/summary/unmerged_length");
     }
     if (artifact_has_dataset(artifact, "/throats/image")) {
+        if (!artifact_has_dataset(artifact, "/faces/image") ||
+            !artifact_has_dataset(artifact, "/faces/node_image"))
+            die(STATUS_BAD_DATA,
+                "%s: /throats/image needs /faces/image and /faces/node_image beside it",
+                artifact->path);
         network.throat_image = artifact_get(artifact, "/throats/image", NULL);
         network.face_image = artifact_get(artifact, "/faces/image", NULL);
         network.face_node_image = artifact_get(artifact, "/faces/node_image", NULL);
@@ -401,6 +437,8 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     return network;
 }
 
+// /history has a row a step, /changes the throats that change in it: rows offset[k] to
+// offset[k+1] - 1 belong to step k.
 struct drying_record artifact_get_drying(const struct artifact *artifact)
 {
     struct drying_record record;

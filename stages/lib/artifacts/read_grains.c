@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The first 8 bytes tell an HDF5 artifact, a LAMMPS dump and plain text apart; each has
 // its reader (read.c, formats/lammps.c, formats/grain_text.c).
+//
+// Only an HDF5 file or a dump says what the box is; of text the box is where the grains
+// end. The provenance has the schema and digest of an artifact, and "text" with a
+// digest of anything else: check goes by that to know what has no bonds yet.
 #include "artifacts/read_grains.h"
 
 #include "artifacts/artifact.h"
@@ -49,6 +53,8 @@ static bool may_hold_grains(const struct bytes *beginning)
            is_hdf5(beginning) || !memcmp(beginning->data, "ITEM", 4);
 }
 
+// An empty standard input gets a line of its own: mostly an input was forgotten. The
+// bytes of an artifact become its image, those of text are freed here.
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
                            bool *has_box, json_t *inputs)
 {
@@ -63,6 +69,8 @@ struct packing read_grains(const char *path, const char *schema, int64_t frame,
     return packing;
 }
 
+// Where diameters were taken for radii, a box drawn around the grains is too wide by
+// what is now halved: it is drawn again.
 void convert_grains(struct packing *packing, double by, bool diameters, bool has_box)
 {
     for (int i = 0; i < packing->n_particle; i++) {
@@ -71,5 +79,9 @@ void convert_grains(struct packing *packing, double by, bool diameters, bool has
     }
     packing->lower = scale(by, packing->lower);
     packing->upper = scale(by, packing->upper);
+    for (int b = 0; b < packing->n_body; b++) {
+        packing->body[b].lower = scale(by, packing->body[b].lower);
+        packing->body[b].upper = scale(by, packing->body[b].upper);
+    }
     if (!has_box && diameters) box_around(packing);
 }

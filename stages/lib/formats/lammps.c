@@ -6,6 +6,14 @@
 //
 // Boxes must be straight: tilted ones (xy xz yz) are refused. Sides are periodic where
 // both flags are p. Types, velocities and other columns are passed over.
+//
+//     ITEM: TIMESTEP              not read; begins a frame
+//     ITEM: NUMBER OF ATOMS       n
+//     ITEM: BOX BOUNDS pp pp ff   low high, for x, y and z
+//     ITEM: ATOMS id x y z radius ...   n rows, a number for each column
+//
+// Lengths are taken as they are: the caller turns them into metres. Grains are put back
+// into a box along its periodic sides, as x and xu may lie beyond them.
 #include "formats/grains.h"
 
 #include "basics/memory.h"
@@ -82,7 +90,7 @@ static enum status find_frame(struct lines *lines, int64_t frame, struct reason 
     if (!count) return refuse(reason, STATUS_BAD_DATA, "no \"ITEM: TIMESTEP\" line");
     if (frame >= count)
         return refuse(reason, STATUS_BAD_DATA,
-                      "pack.frame: must be below %lld, the frames there are, got %lld",
+                      "frame: must be below %lld, the frames there are, got %lld",
                       (long long)count, (long long)frame);
     *lines = last;
     return STATUS_OK;
@@ -168,6 +176,8 @@ static int read_row(const char *line, double row[MOST_COLUMNS])
     return count;
 }
 
+// xs is a share of the box: low + edge xs. Words in columns that nobody asks for do not
+// matter; in those that are needed they are NAN, and refused.
 static enum status read_grain(const struct lines *lines, const struct columns *columns,
                               const struct packing *box, struct grain *grain,
                               struct reason *reason)
@@ -205,6 +215,7 @@ static int by_id(const void *a, const void *b)
     return (first->id > second->id) - (first->id < second->id);
 }
 
+// Of grains that are sorted by id.
 static bool ids_differ(const struct grain *grain, int n)
 {
     for (int i = 1; i < n; i++)
@@ -212,6 +223,8 @@ static bool ids_differ(const struct grain *grain, int n)
     return true;
 }
 
+// Without ids grains keep the order of the rows. Memory grows with the rows that are
+// there, not with N.
 static enum status read_grains(struct lines *lines, const char *names, int64_t n,
                                struct packing *packing, struct reason *reason)
 {

@@ -2,7 +2,17 @@
 // A call in order: options are parsed (argp), the parameter file is read, its section
 // found and completed from the scene's "conditions", --set is put in, the struct of
 // parameters filled; then outputs are checked, before hours of work: that they can be
-// made, and that none replaces an input or another output.
+// made, that the artifact replaces no input of another kind, and no output another.
+//
+// Who says a parameter, the strongest first:
+//
+//     --set KEY=VALUE                 on the command line
+//     "STAGE": {"KEY": ...}           the section of the file of -p, or the file itself
+//     "conditions": {"KEY": ...}      of the scene, for keys that are shared
+//     the default of the table
+//
+// Errors of the command line exit 64, of the file or a value 65, a missing file 66. A
+// parameter that is wrong does not end the run at once: all of them are reported first.
 #include "parameters/stage.h"
 
 #include "basics/file.h"
@@ -70,6 +80,7 @@ const char *stage_program(const struct stage *stage, char text[64])
     return text;
 }
 
+// --schema: at once, without a look at files or at what follows on the command line.
 static void print_schema(const struct stage *stage)
 {
     json_t *schema = parameters_schema(stage->parameters, stage->name);
@@ -87,6 +98,7 @@ static enum progress_mode parse_progress(const char *text)
     die(STATUS_USAGE, "--progress: must be auto, always or never, got %s", text);
 }
 
+// Only the pointer is kept: argv outlives the invocation.
 static void add_input(struct command_line *line, const char *name)
 {
     struct invocation *invocation = line->invocation;
@@ -168,6 +180,7 @@ static bool cites(const struct stage *stage, const char *mark)
     return mentions(stage->summary, mark) || mentions(stage->notes, mark);
 }
 
+// What the letters in texts stand for, of the papers that occur in them.
 static void print_cited(const struct stage *stage, FILE *stream)
 {
     static const char *const papers[][2] = {
@@ -212,7 +225,8 @@ static char *help_filter(int key, const char *text, void *input)
     return help;
 }
 
-// A key that occurs twice is refused: which of them counts would be a guess.
+// A key that occurs twice is refused: which of them counts would be a guess. The line
+// and column are those of the parser; what is not an object has neither.
 static json_t *load_json(const char *path)
 {
     struct bytes bytes = read_whole(path);
@@ -235,7 +249,9 @@ static bool is_section(const char *key)
 }
 
 // Whether JSON has a section of a stage; pack.check is a text, the section of check an
-// object. Otherwise it is one stage's own section.
+// object. Otherwise it is one stage's own section. One key that is a section decides,
+// so that a scene with a misspelt section is still taken for a scene, and the
+// misspelling told.
 static bool is_scene(json_t *json, const struct parameter *table)
 {
     const char *key;
@@ -250,6 +266,7 @@ static bool is_scene(json_t *json, const struct parameter *table)
     return false;
 }
 
+// By edit distance; of equally near ones the first.
 static const char *nearest_section(const char *key)
 {
     const char *nearest = sections[0];
@@ -259,6 +276,7 @@ static const char *nearest_section(const char *key)
     return nearest;
 }
 
+// NULL where the scene has none: all defaults.
 static json_t *object_of_scene(const json_t *scene, const char *path, const char *name)
 {
     json_t *object = json_object_get(scene, name);
@@ -268,7 +286,9 @@ static json_t *object_of_scene(const json_t *scene, const char *path, const char
 }
 
 // With what it shares with others. A new reference. Unknown sections are refused, since
-// a misspelt one would be ignored silently.
+// a misspelt one would be ignored silently. What the stage's own section says stays;
+// from "conditions" it gets only what it lacks. The section is changed in place: it
+// belongs to the file just read.
 static json_t *section_of_scene(const json_t *scene, const char *path,
                                 const struct stage *stage)
 {
@@ -313,7 +333,10 @@ static void set(json_t *section, const char *stage, const char *assignment)
     parameters_set(section, assignment);
 }
 
-// WHERE begins each message: the file, the section, and whether --set took part.
+// WHERE begins each message: the file, the section, and whether --set took part. --set
+// comes after the file and before the check, so that what it repairs is not reported.
+// Effective parameters go to the invocation, which the artifact's provenance is made
+// from.
 static void fill(const struct command_line *line, void *parameters)
 {
     json_t *section = load_section(line);
@@ -328,6 +351,7 @@ static void fill(const struct command_line *line, void *parameters)
     json_decref(section);
 }
 
+// END is the row of zeros, which moves one down.
 static struct argp_option *add_option(struct argp_option *end, const char *name,
                                       int key, const char *argument, const char *text)
 {
@@ -356,7 +380,8 @@ static void list_options(const struct stage *stage, struct argp_option *list)
                "Time between two checkpoints [600]");
 }
 
-// Another output, of OPTION, needs another place.
+// Another output, of OPTION, needs another place. --report and --checkpoint are
+// compared with the output only, not with inputs.
 static void check_other(const struct invocation *invocation, const char *option,
                         const char *path)
 {
@@ -364,6 +389,9 @@ static void check_other(const struct invocation *invocation, const char *option,
     if (is_same_place(path, invocation->output))
         die(STATUS_USAGE, "%s %s: is where the output goes: name another file", option,
             path);
+    for (int k = 0; k < invocation->n_input; k++)
+        if (strcmp(path, "-") && is_same_place(path, invocation->inputs[k]))
+            die(STATUS_USAGE, "%s %s: is an input: name another file", option, path);
     check_output(path);
 }
 
@@ -384,6 +412,17 @@ static void check_inputs(const struct invocation *invocation)
     }
 }
 
+static void check_scene(const struct command_line *line)
+{
+    const struct invocation *invocation = line->invocation;
+    if (!line->params || !strcmp(line->params, "-")) return;
+    if (is_same_place(line->params, invocation->output) ||
+        (invocation->report && is_same_place(line->params, invocation->report)))
+        die(STATUS_USAGE, "--params %s: is where the output goes: name another file",
+            line->params);
+}
+
+// It is read back and replaced many times, which a pipe or device cannot be.
 static void check_checkpoint(const struct invocation *invocation)
 {
     const char *path = invocation->checkpoint;
@@ -399,7 +438,9 @@ static void check_checkpoint(const struct invocation *invocation)
     check_other(invocation, "--checkpoint", path);
 }
 
-// Without an input standard input is read, if the stage takes any.
+// Without an input standard input is read, if the stage takes any. A terminal is
+// refused as output but by stages that tell people: an artifact is not text. Outputs
+// are looked at last, when it is clear that there is something to run.
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
@@ -427,6 +468,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");
     check_inputs(&invocation);
+    check_scene(&line);
     check_output(invocation.output);
     check_other(&invocation, "--report", invocation.report);
     check_checkpoint(&invocation);
