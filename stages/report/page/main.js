@@ -134,7 +134,8 @@ function drawFirst(page) {
   draw(page);
   if (!page.first) return;
   page.first = false;
-  page.rest = setTimeout(() => { page.moving = false; page.stale = true; askDraw(page); }, 160);
+  page.stale = true;
+  keepMoving(page);
 }
 
 function moveTo(page, key) {
