@@ -51,7 +51,7 @@ static const struct parameter table[] = {
          "3.7], or from the throat to the grains beside it (for grains of one size "
          "these agree but line); entry: the radius whose capillary pressure is that "
          "at which gas enters between the grains, liquid staying in their gaps "
-         "(Mayer, Stowe and Princen)"},
+         "(Mayer, Stowe and Princen); of a layer as segment"},
     {"contact_angle", PARAMETER_NUMBER, "degree", "0",
      offsetof(struct tessellate_parameters, contact_angle), BETWEEN(0, 89.999),
      .text =
