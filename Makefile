@@ -313,7 +313,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-BENCH_STUDIES := $(addprefix bench-,packings dem impact simulate simulate-speed walls bridge viscous replay dry network flow report)
+BENCH_STUDIES := $(addprefix bench-,packings dem impact simulate simulate-speed walls bridge viscous replay dry network flow report scale)
 .PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) bench-void speed-vs-error
 check: all $(C_TESTS) $(VOID) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -351,6 +351,7 @@ bench-replay: ## error of both engines of the replay against time, and time agai
 bench-dry: ## time of drying and of invasion percolation against size (ten minutes)
 bench-network: ## measure time and memory of the tessellation, next to voro++
 bench-flow: ## measure time and memory of the flow, next to Yade
+bench-scale: ## each stage on irregular grains: time, growth, memory, files at three sizes (an hour)
 bench-report: ## the page of 50,000 grains in a headless Chromium: first picture, slider, turning
 bench-void: all $(VOID) ## networks of packings beside their void solved directly (a minute)
 	@tests/bench/void/compare $(BUILD)/void

@@ -96,18 +96,19 @@ json_t *suggest(const struct material *material, const struct packing *packing,
 // ---- cost ---------------------------------------------------------------------------
 
 // Seconds of one core and megabytes of A n^B for n thousand grains: between 1000
-// settled grains with the scene of docs/your-grains.md and the 50,000 of
-// docs/irregular-aggregates.md; equilibria at 1000 and 4000 grains, without friction.
-// Never less memory than at 1000.
+// settled grains with the scene of docs/your-grains.md and the 100,000 of
+// tests/bench/scale; equilibria at 1000 and 4000 grains without friction, and at 200
+// and 300 with friction and some twenty cracks. Never less memory than at 1000.
 static const struct rate {
     const char *stage;
     double seconds, seconds_power, megabytes, megabytes_power;
 } rates[] = {{"tessellate", 0.1, 0.8, 15, 0.5},
              {"merge-nodes", 0.05, 0.7, 15, 0.7},
-             {"dry", 0.9, 1, 40, 0.5},
+             {"dry", 0.6, 1.5, 40, 0.5},
              {"force-protocol (100 loads)", 1, 0.8, 63, 0.6},
              {"dem-replay (100 loads of 100 cycles)", 1.5, 0.9, 21, 1},
-             {"dem-replay (100 loads, engine=quasi-static)", 4, 3, 61, 1.3}};
+             {"dem-replay (100 equilibria, friction=0)", 4, 3, 61, 1.3},
+             {"dem-replay (100 equilibria)", 400, 3, 61, 1.3}};
 
 json_t *expected_cost(int n)
 {

@@ -15,10 +15,14 @@ def at(name):
 
 
 def cost(*command):
-    """CPU seconds of user and system, and MiB at most; what it prints is lost."""
+    """CPU seconds of user and system, and MiB at most; what it prints is lost.
+
+    The peak is that which `time` sees: a child of this program begins with the peak of its parent."""
     silent = [(os.POSIX_SPAWN_OPEN, stream, os.devnull, os.O_WRONLY, 0) for stream in (1, 2)]
-    process = os.posix_spawnp(command[0], command, environment, file_actions=silent)
+    timed = ("/usr/bin/time", "-q", "-f", "%M", "-o", at("peak"), *command)
+    process = os.posix_spawn(timed[0], timed, environment, file_actions=silent)
     _, status, usage = os.wait4(process, 0)
     if status:
         sys.exit(f"{command[0]} failed: {os.waitstatus_to_exitcode(status)}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+    with open(at("peak"), encoding="utf-8") as file:
+        return usage.ru_utime + usage.ru_stime, float(file.read()) / 1024

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One step of Newton's method for the displacements u,
 //     residual(u) = load - damping dashpot_force - B^T response(B u) = 0.
-// K is the tangent as it was last factored, B^T tangent B; dashpots have (1 + damping)
-// K. Pairs whose response has changed since carry an excess load q [contact_solver.h]:
+// K is the tangent as it was last factored, B^T tangent B. Dashpots at pairs have
+// damping K, those of grains damping c, so that (1 + damping) (K + damping/(1 +
+// damping) c) is factored. Pairs whose response has changed since carry an excess load
+// q [contact_solver.h]:
 //     K step = rhs = (residual - B^T q(B step)) / (1 + damping)
-// and the dashpot force, which is K (u - previous), grows by rhs. A pair that the step
+// and the dashpot force, which is K (u - previous), grows by rhs less the share of c. A
+// pair that the step
 // changes is active from then on, and the step is found again.
 #include "quasi_static_internal.h"
 
@@ -131,6 +134,8 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh)
     for (int i = 0; i < qs->n; i++) {
         displacement_subtract(&qs->displacement[i],
                               displacement_scaled(-1, qs->step[i]));
+        displacement_subtract(
+            &qs->rhs[i], displacement_scaled(dashpot_in_stiffness(qs), qs->step[i]));
         displacement_subtract(&qs->dashpot_force[i],
                               displacement_scaled(-1, qs->rhs[i]));
     }

@@ -29,9 +29,7 @@ static void find_units(struct quasi_static *qs)
     qs->stiffness = fmax(glue, qs->setup.material.normal_stiffness);
 }
 
-// Much softer than any bond or contact: it makes K regular where nothing holds a grain,
-// and matters nowhere else.
-static double regularisation_of(const struct quasi_static *qs)
+static double softest_pair(const struct quasi_static *qs)
 {
     double least = 1;
     for (int j = 0; j < qs->n_pair; j++) {
@@ -40,7 +38,17 @@ static double regularisation_of(const struct quasi_static *qs)
         for (int k = 0; k < 2; k++)
             if (each[k] > 0) least = fmin(least, each[k]);
     }
-    return 1e-9 * least;
+    return least;
+}
+
+// The regularisation is much softer than any bond or contact: it makes K regular where
+// nothing holds a grain, and matters nowhere else. Large displacements have dashpots of
+// their own (large/implicit_dynamics.c).
+static void find_diagonals(struct quasi_static *qs)
+{
+    const double softest = softest_pair(qs);
+    qs->regularisation[0] = qs->regularisation[1] = 1e-9 * softest;
+    if (!qs->setup.large_displacements) qs->grain_dashpot = 0.03 * softest;
 }
 
 enum status quasi_static_create(struct quasi_static **result,
@@ -68,7 +76,7 @@ enum status quasi_static_create(struct quasi_static **result,
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     qs->is_detached = NEW_ARRAY(bool, n);
     qs->fragments = fragments_init(n);
-    qs->regularisation[0] = qs->regularisation[1] = regularisation_of(qs);
+    find_diagonals(qs);
     allocate_pair_arrays(qs);
     qs->may_detach = !setup->large_displacements;
     qs->kinematics = qs->may_detach ? &small_displacements : &large_displacements;

@@ -72,7 +72,8 @@ struct quasi_static {
     struct net_load taken_off;          // of the load, where nothing holds the grains
     double largest_load;                // so far: scale of the residual
     double damping;                     // of dashpots, over stiffness times time step
-    struct displacement *dashpot_force; // (n) at a damping of 1
+    struct displacement *dashpot_force; // (n) of those at pairs, at a damping of 1
+    double grain_dashpot; // of one on each grain, at a damping of 1; 0: none
     // A step of Newton's method.
     struct displacement *step;       // (n)
     double (*increment)[COMPONENTS]; // (n_pair) of the deformation, by the step
@@ -85,6 +86,7 @@ struct quasi_static {
     struct contact_solver *contacts;
     struct pair_rows *changed; // (n_pair) room for a list
     double regularisation[2];  // on the diagonal of K: of translations, of rotations
+    double factored_dashpot;   // the same of the grains' dashpots
     // Fragments, and grains that have left.
     struct fragments fragments;
     bool *is_detached; // (n)
@@ -126,8 +128,14 @@ void update_load_scale(struct quasi_static *qs);
 void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
                   double (*deformation)[COMPONENTS]);
 void update_deformation(struct quasi_static *qs); // of the iterate
-void update_residual(struct quasi_static *qs);    // and the deformation
+// On the diagonal of K, so that (1 + damping) times it is damping times a dashpot.
+static inline double dashpot_in_stiffness(const struct quasi_static *qs)
+{
+    return qs->grain_dashpot * qs->damping / (1 + qs->damping);
+}
+void update_residual(struct quasi_static *qs); // and the deformation
 double largest_residual(const struct quasi_static *qs);
+double largest_dashpot_load(const struct quasi_static *qs);
 int grain_of_largest_residual(const struct quasi_static *qs); // the first such
 
 // The tangent as all pairs are now. False: it has no factor.

@@ -24,7 +24,9 @@ static void subtract_small_loads(struct quasi_static *qs)
 static bool factor_small(struct quasi_static *qs)
 {
     const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
-    return stiffness_factor(qs->matrix, tangent, NULL, qs->regularisation);
+    const double more = qs->factored_dashpot = dashpot_in_stiffness(qs);
+    const double soft[2] = {qs->regularisation[0] + more, qs->regularisation[1] + more};
+    return stiffness_factor(qs->matrix, tangent, NULL, soft);
 }
 
 // To TARGET_FRACTION of the tolerance, or as far below the tolerance as steps reduce
@@ -39,6 +41,7 @@ static bool solve_small(struct quasi_static *qs)
     const double well = (qs->damping > 0 ? 1 : TARGET_FRACTION) * qs->tolerance_now;
     if (largest_residual(qs) <= well) return true; // the load is the same
     bool is_fresh = qs->factors == 0 ||
+                    qs->factored_dashpot != dashpot_in_stiffness(qs) ||
                     contact_solver_work(qs->contacts) > 16 * stiffness_work(qs->matrix);
     if (is_fresh && !factor_tangent(qs)) return false;
     double before = INFINITY;
