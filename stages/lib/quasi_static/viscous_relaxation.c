@@ -71,12 +71,12 @@ static void shorten(struct quasi_static *qs, struct pace *pace)
 }
 
 // Whether something held would move further than is small: it slides without end, and
-// longer steps only take it further.
+// longer steps only take it further. What is not a number goes on, to be reported.
 static bool slides_away(const struct quasi_static *qs)
 {
     for (int i = 0; i < qs->n && !qs->large; i++)
         if (qs->fragments.is_held[qs->fragments.of[i]] && !qs->is_detached[i] &&
-            !(displacement_size(qs->displacement[i]) <= SMALL_LIMIT))
+            displacement_size(qs->displacement[i]) > SMALL_LIMIT)
             return true;
     return false;
 }
