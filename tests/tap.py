@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the test scripts in Python share: TAP lines, the programs, artifacts."""
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -50,6 +51,12 @@ def sets(*settings):
 def scratch():
     """A folder that goes when the test ends."""
     return tempfile.TemporaryDirectory(prefix="craquelure-test-")
+
+
+def code_blocks(text):
+    """The indented blocks of a page, in their order, without the indent."""
+    for block in re.finditer(r"(?:^    .*\n|^\n(?=    ))+", text, re.M):
+        yield re.sub(r"^    ", "", block[0], flags=re.M).strip("\n")
 
 
 def read(path):

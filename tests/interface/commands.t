@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read
+from tap import BIN, code_blocks, done, ok, read
 
 STAGES = sorted(os.listdir(BIN))
 DATABASE = subprocess.run(["make", "-qp"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
@@ -19,10 +19,9 @@ VARIABLES = set(re.findall(r"\$[({](\w+)", "".join(read(path).decode() for path 
 
 
 def blocks(page):
-    """(line, text) of what a page shows as code; documents that are fed to a program left out."""
+    """What a page shows as code; documents that are fed to a program left out."""
     text = re.sub(r"^    .*<<'?(\w+)'?.*\n(.*\n)*?    \1\n", "", read(page).decode(), flags=re.M)
-    for block in re.finditer(r"(?:^    .*\n|^\n(?=    ))+", text, re.M):
-        yield re.sub(r"^    ", "", block[0], flags=re.M).strip("\n")
+    return code_blocks(text)
 
 
 def commands(text):

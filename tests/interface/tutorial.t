@@ -8,13 +8,10 @@ import subprocess
 import sys
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, scratch
+from tap import BIN, code_blocks, done, ok, read, scratch
 
 folder = scratch()
-with open("docs/tutorial.md", encoding="utf-8") as page:
-    # The indented blocks of the page, in their order.
-    blocks = [re.sub(r"(?m)^    ", "", block).strip("\n")
-              for block in re.findall(r"(?m)(?:^    .*\n|^\n(?=    ))+", page.read())]
+blocks = list(code_blocks(read("docs/tutorial.md").decode()))
 
 
 def following(start):

@@ -7,7 +7,6 @@ import os
 import sys
 
 import h5py
-import numpy as np
 
 sys.path.insert(0, "tests")
 from tap import done, ok, run, scratch, sets
@@ -22,7 +21,7 @@ BODY = sets("density=2500", "normal_stiffness=3.6e6", "shear_stiffness=3.6e6", "
 
 network = run("merge-nodes", "-q", *sets("measure=fraction", "threshold=0.06"), input=run(
     "tessellate", "-q", *sets("throat_volume=void"), input=run("pack", "-q", "--set", "method=deposition", *SIZES)))
-drying = run("dry", "-q", *sets("open=['+z']".replace("'", '"'), "boundary_layer.thickness=1e-3", "relative_humidity=0.4",
+drying = run("dry", "-q", *sets('open=["+z"]', "boundary_layer.thickness=1e-3", "relative_humidity=0.4",
                                 "temperature=293.15", "fluid=water"), input=network)
 run("dem-replay", "-q", *BODY, "-o", at("response"), input=run("force-protocol", "-q", *sets("steps=100"), input=drying))
 with h5py.File(at("response")) as file:

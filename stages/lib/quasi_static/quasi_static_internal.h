@@ -128,7 +128,7 @@ void update_load_scale(struct quasi_static *qs);
 void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
                   double (*deformation)[COMPONENTS]);
 void update_deformation(struct quasi_static *qs); // of the iterate
-// On the diagonal of K, so that (1 + damping) times it is damping times a dashpot.
+// What is added to the diagonal of K: (1 + damping) times it is damping grain_dashpot.
 static inline double dashpot_in_stiffness(const struct quasi_static *qs)
 {
     return qs->grain_dashpot * qs->damping / (1 + qs->damping);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // residual = load - damping (dashpot_force + grain_dashpot (u - previous))
-//            - B^T response(B u), 0 for grains that are fixed or detached. A residual
-//            is as large as the larger of its force and its moment;
-// the largest of all grains is what the tolerance judges.
+//            - B^T response(B u)
+// and 0 for grains that are fixed or detached. A residual is as large as the larger of
+// its force and its moment; the largest of all grains is what the tolerance judges.
 #include "quasi_static_internal.h"
 
 #include <math.h>

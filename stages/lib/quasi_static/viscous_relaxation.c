@@ -6,7 +6,7 @@
 // any the step leads to equilibrium. A step that is found becomes history.
 //
 // Dashpots at pairs, in proportion to K, do not slow a grain that touches nothing, or
-// rolls. So each grain has one of its own as well, c, much softer than any pair.
+// rolls. So each grain also has a dashpot c of its own, much softer than any pair.
 #include "quasi_static_internal.h"
 
 #include <math.h>
@@ -81,7 +81,8 @@ static bool slides_away(const struct quasi_static *qs)
     return false;
 }
 
-// False: no rest within the iterations, or no step with the stiffest dashpots.
+// False: no rest within the iterations, or no step with the stiffest dashpots; the
+// caller rolls back.
 static bool viscous_relaxation(struct quasi_static *qs)
 {
     struct pace pace = {.growth = 16, .missed = INFINITY};
@@ -99,9 +100,6 @@ static bool viscous_relaxation(struct quasi_static *qs)
         }
         roll_back_state(qs);
     }
-    qs->damping = 0;
-    roll_back_state(qs);
-    update_residual(qs);
     return false;
 }
 
@@ -112,7 +110,8 @@ bool relax_to_equilibrium(struct quasi_static *qs)
         commit_state(qs);
         return true;
     }
-    if (!qs->is_unconverged) return viscous_relaxation(qs);
+    if (!qs->is_unconverged && viscous_relaxation(qs)) return true;
+    qs->damping = 0;
     roll_back_state(qs);
     update_residual(qs);
     return false;
