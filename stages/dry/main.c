@@ -19,6 +19,7 @@
 #include "write_drying.h"
 
 #include <math.h>
+#include <omp.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -199,6 +200,7 @@ int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    omp_set_num_threads(invocation.threads);
     check_snapshots(&parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What drying must not depend on: how nodes and throats are numbered, the unit of
-// length, and, while the liquid is in one piece, how fast it dries.
+// length, the number of threads, and, while the liquid is in one piece, how fast it
+// dries.
 #include "../test.h"
 #include "dry/liquid/clusters.h"
+#include "elimination/dense_front.h"
 #include "network/invasion.h"
 #include "support_lattice.h"
 
 #include "basics/memory.h"
 
+#include <omp.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -312,6 +315,33 @@ static void test_one_cluster_empties_as_invasion_says(void **state)
     check_drying_is_invasion(1e7);
 }
 
+// A front large enough for threads to share it, of doubles and of floats: the same
+// bits.
+static void test_threads_do_not_matter(void **state)
+{
+    (void)state;
+    int n[3] = {34, 34, 3};
+    assert_true(n[0] * n[1] > SHARED_FRONT);
+    struct network network = lattice_network(n[0], n[1], n[2], spacing);
+    randomise_radii(&network, spacing, 0.5, 11);
+    for (int rounded = 0; rounded < 2; rounded++) {
+        struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
+        conditions.vapour_tolerance = rounded ? 1e-6 : 0;
+        struct drying_history history[2];
+        for (int k = 0; k < 2; k++) {
+            omp_set_num_threads(1 + 2 * k);
+            history[k] = dry_or_fail(&network, &conditions);
+        }
+        const struct drying_history *a = &history[0], *b = &history[1];
+        assert_int_equal(a->n_step, b->n_step);
+        assert_memory_equal(a->rate, b->rate, (size_t)a->n_step * sizeof *a->rate);
+        assert_memory_equal(a->time, b->time, (size_t)a->n_step * sizeof *a->time);
+        for (int k = 0; k < 2; k++)
+            drying_history_free(&history[k]);
+    }
+    network_free(&network);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -320,6 +350,7 @@ int main(void)
         cmocka_unit_test(test_ties_do_not_hang_on_numbers),
         cmocka_unit_test(test_unit_of_length_does_not_matter),
         cmocka_unit_test(test_order_within_a_cluster_does_not_depend_on_the_rate),
-        cmocka_unit_test(test_one_cluster_empties_as_invasion_says)};
+        cmocka_unit_test(test_one_cluster_empties_as_invasion_says),
+        cmocka_unit_test(test_threads_do_not_matter)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

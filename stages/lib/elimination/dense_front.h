@@ -10,8 +10,9 @@
 #include <stddef.h>
 
 // Updates that may be pending; rows in a panel; bytes of a row in a block of pending
-// rows (72 doubles or 144 floats).
-enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576 };
+// rows (72 doubles or 144 floats); rows from which on threads share the work. Each entry
+// is one thread's, so results do not depend on their number.
+enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576, SHARED_FRONT = 1024 };
 
 // Entries i > j, row by row. Small: packed, doubles. Large: rows lie in panels, all as
 // long as the longest of their panel with its diagonal block, so that whole vectors

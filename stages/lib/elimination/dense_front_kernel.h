@@ -107,19 +107,25 @@ static void pack_weights(const struct dense_front *dense, int begin, int end,
     }
 }
 
-// Rows in portions whose weights stay in the second-level cache. The weight array is
-// the only allocation.
+// Rows in portions whose weights stay in the second-level cache; threads take portions,
+// the widest first. The weights are the only allocation.
 void PASS(struct dense_front *dense, int n)
 {
-    enum { ROWS = 4 * BLOCK };
-    NUMBER *weight = allocate_uncleared((size_t)ROWS * MAX_PENDING, sizeof *weight);
-    for (int begin = 0; begin < n; begin += ROWS) {
-        const int end = n < begin + ROWS ? n : begin + ROWS;
-        pack_weights(dense, begin, end, weight);
-        for (int first = 0; first < end; first += BLOCK)
-            add_to_block(dense, begin, end, first, weight);
+    enum { ROWS = BLOCK };
+    const int n_portion = (n + ROWS - 1) / ROWS;
+#pragma omp parallel if (n > SHARED_FRONT)
+    {
+        NUMBER *weight = allocate_uncleared((size_t)ROWS * MAX_PENDING, sizeof *weight);
+#pragma omp for schedule(dynamic)
+        for (int portion = n_portion - 1; portion >= 0; portion--) {
+            const int begin = portion * ROWS;
+            const int end = n < begin + ROWS ? n : begin + ROWS;
+            pack_weights(dense, begin, end, weight);
+            for (int first = 0; first < end; first += BLOCK)
+                add_to_block(dense, begin, end, first, weight);
+        }
+        free(weight);
     }
-    free(weight);
 }
 
 // row[c] += sum_k weight[k] pending[k][c] for columns below N, three vectors at a time.
