@@ -22,15 +22,21 @@
 // A grain beside a throat.
 struct corner {
     int32_t throat, grain;
-    struct vector arm;         // from the middle of the throat to the grain
-    struct vector pull;        // f0, then f
-    struct vector rotation[3]; // displacement in three rotations of the grains around
-                               // the throat, orthonormal over these, or 0
-    struct vector now;         // the last result of balance
+    struct vector arm;  // from the middle of the throat to the grain
+    struct vector pull; // f0, then f
+    struct vector now;  // the last result of balance
+};
+
+// The displacements of a grain in three rotations of the grains around a throat,
+// orthonormal over these, or 0. Found again where they are used: kept, they would be
+// half of all memory.
+struct rotations {
+    struct vector of[3];
 };
 
 struct throats {
     int n_throat, n_grain, n_corner, capacity;
+    int most;              // corners of a throat
     struct corner *corner; // (n_corner)
     int *first;            // (n_throat+1) corners of each throat
     int *begin, *corners;  // (n_grain+1) into CORNERS (n_corner): corners of each grain
@@ -85,7 +91,11 @@ static void find_corners(struct throats *throats, struct sectors *sectors,
             struct corner *corner = corner_of(throats, sector);
             corner->pull = add(corner->pull, pull_of(form)(sectors, sector, NULL));
         }
+        if (throats->n_corner - throats->first[t] > throats->most)
+            throats->most = throats->n_corner - throats->first[t];
     }
+    throats->corner =
+        reallocate(throats->corner, (size_t)throats->n_corner, sizeof *throats->corner);
     throats->first[throats->n_throat] = throats->n_corner;
 }
 
@@ -127,21 +137,22 @@ static struct vector mean_arm(const struct corner *corner, int n)
 }
 
 // Orthogonalises the Kth rotation to those before it; twice, for rounding.
-static void orthogonalise(struct corner *corner, int n, int k)
+static void orthogonalise(struct rotations *rotations, int n, int k)
 {
     for (int former = 0; former < 2 * k; former++) {
         double share = 0;
         for (int c = 0; c < n; c++)
-            share += dot(corner[c].rotation[k], corner[c].rotation[former % k]);
+            share += dot(rotations[c].of[k], rotations[c].of[former % k]);
         for (int c = 0; c < n; c++)
-            corner[c].rotation[k] = subtract(
-                corner[c].rotation[k], scale(share, corner[c].rotation[former % k]));
+            rotations[c].of[k] =
+                subtract(rotations[c].of[k], scale(share, rotations[c].of[former % k]));
     }
 }
 
-// Orthonormal rotations about the mean place. Grains in one line have two, one grain
-// none.
-static void find_rotations(struct corner *corner, int n)
+// ROTATIONS (n) become orthonormal, about the mean place. Grains in one line have two,
+// one grain none.
+static void find_rotations(const struct corner *corner, int n,
+                           struct rotations *rotations)
 {
     const struct vector middle = mean_arm(corner, n);
     double reach = 0;
@@ -151,45 +162,51 @@ static void find_rotations(struct corner *corner, int n)
         struct vector axis = {0};
         set_component(&axis, k, 1);
         for (int c = 0; c < n; c++)
-            corner[c].rotation[k] = cross(axis, subtract(corner[c].arm, middle));
-        orthogonalise(corner, n, k);
+            rotations[c].of[k] = cross(axis, subtract(corner[c].arm, middle));
+        orthogonalise(rotations, n, k);
         double size = 0;
         for (int c = 0; c < n; c++)
-            size += dot(corner[c].rotation[k], corner[c].rotation[k]);
+            size += dot(rotations[c].of[k], rotations[c].of[k]);
         const double unit = size > 1e-20 * reach * reach ? 1 / sqrt(size) : 0;
         for (int c = 0; c < n; c++)
-            corner[c].rotation[k] = scale(unit, corner[c].rotation[k]);
+            rotations[c].of[k] = scale(unit, rotations[c].of[k]);
     }
 }
 
-// Removes the rigid part of NOW.
-static void project(struct corner *corner, int n)
+// Removes the rigid part of NOW. ROTATIONS (n): workspace.
+static void project(struct corner *corner, int n, struct rotations *rotations)
 {
     struct vector mean = {0};
-    double rotation[3] = {0};
+    double share[3] = {0};
+    find_rotations(corner, n, rotations);
     for (int c = 0; c < n; c++) {
         mean = add(mean, scale(1.0 / n, corner[c].now));
         for (int k = 0; k < 3; k++)
-            rotation[k] += dot(corner[c].now, corner[c].rotation[k]);
+            share[k] += dot(corner[c].now, rotations[c].of[k]);
     }
     for (int c = 0; c < n; c++) {
         corner[c].now = subtract(corner[c].now, mean);
         for (int k = 0; k < 3; k++)
             corner[c].now =
-                subtract(corner[c].now, scale(rotation[k], corner[c].rotation[k]));
+                subtract(corner[c].now, scale(share[k], rotations[c].of[k]));
     }
 }
 
 // NOW = P (pull - MULTIPLIER of the grain).
 static void balance(struct throats *throats, const struct vector *multiplier)
 {
-#pragma omp parallel for
-    for (int t = 0; t < throats->n_throat; t++) {
-        const int n = throats->first[t + 1] - throats->first[t];
-        struct corner *corner = &throats->corner[throats->first[t]];
-        for (int c = 0; c < n; c++)
-            corner[c].now = subtract(corner[c].pull, multiplier[corner[c].grain]);
-        if (!throats->supported[t]) project(corner, n);
+#pragma omp parallel
+    {
+        struct rotations *rotations = NEW_ARRAY(struct rotations, throats->most);
+#pragma omp for
+        for (int t = 0; t < throats->n_throat; t++) {
+            const int n = throats->first[t + 1] - throats->first[t];
+            struct corner *corner = &throats->corner[throats->first[t]];
+            for (int c = 0; c < n; c++)
+                corner[c].now = subtract(corner[c].pull, multiplier[corner[c].grain]);
+            if (!throats->supported[t]) project(corner, n, rotations);
+        }
+        free(rotations);
     }
 }
 
@@ -207,37 +224,47 @@ static void sum_up(const struct throats *throats, struct vector *sum)
     }
 }
 
-// Adds to BLOCK what P of a throat with N corners takes from the corner ROW to COLUMN.
-static void add_projection(const struct corner *row, const struct corner *column, int n,
-                           bool supported, double *block)
+// Adds to BLOCK what P of a throat with N corners takes from corner ROW to COLUMN.
+static void add_projection(const struct rotations *rotations, int row, int column,
+                           int n, bool supported, double *block)
 {
     for (int axis = 0; axis < 3; axis++)
         block[(ptrdiff_t)4 * axis] += (row == column) - (supported ? 0 : 1.0 / n);
     for (int k = 0; k < 3 && !supported; k++)
         for (int a = 0; a < 9; a++)
-            block[a] -= component(row->rotation[k], a / 3) *
-                        component(column->rotation[k], a % 3);
+            block[a] -= component(rotations[row].of[k], a / 3) *
+                        component(rotations[column].of[k], a % 3);
+}
+
+// Adds to the open row what comes from the throat of the corner ROW, of all corners.
+static void add_throat(const struct throats *throats, int row,
+                       struct rotations *rotations, struct block_rows *rows)
+{
+    const int t = throats->corner[row].throat, first = throats->first[t];
+    const int n = throats->first[t + 1] - first;
+    const struct corner *corner = &throats->corner[first];
+    const bool supported = throats->supported[t];
+    if (!supported) find_rotations(corner, n, rotations);
+    for (int c = 0; c < n; c++) {
+        if (!throats->closed[corner[c].grain]) continue;
+        if (supported && c != row - first) continue;
+        add_projection(rotations, row - first, c, n, supported,
+                       block_rows_at(rows, corner[c].grain));
+    }
 }
 
 // The matrix that takes multipliers to sum P m on each closed grain.
 static struct block_rows assemble(const struct throats *throats)
 {
     struct block_rows rows = block_rows_init(throats->n_grain);
+    struct rotations *rotations = NEW_ARRAY(struct rotations, throats->most);
     for (int i = 0; i < throats->n_grain; i++) {
-        for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++) {
-            const struct corner *row = &throats->corner[throats->corners[k]];
-            const int t = row->throat, first = throats->first[t];
-            const int n = throats->first[t + 1] - first;
-            for (int c = first; c < first + n && throats->closed[i]; c++) {
-                const struct corner *column = &throats->corner[c];
-                if (!throats->closed[column->grain]) continue;
-                if (throats->supported[t] && row != column) continue;
-                add_projection(row, column, n, throats->supported[t],
-                               block_rows_at(&rows, column->grain));
-            }
-        }
+        if (throats->closed[i])
+            for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
+                add_throat(throats, throats->corners[k], rotations, &rows);
         block_rows_end_row(&rows);
     }
+    free(rotations);
     return rows;
 }
 
@@ -335,15 +362,12 @@ enum status find_balanced_patches(struct sectors *sectors, enum form form,
     find_corners(&throats, sectors, form);
     list_by_grain(&throats);
     find_closed(&throats);
-    for (int t = 0; t < n_throat; t++)
-        find_rotations(&throats.corner[throats.first[t]],
-                       throats.first[t + 1] - throats.first[t]);
     const enum status status = balance_pulls(&throats, change, reason);
     *patches = (struct patches){0};
     for (int k = 0; k < throats.n_corner && !status; k++)
         patches_add(patches, throats.corner[k].throat, throats.corner[k].grain,
                     throats.corner[k].pull);
-    patches_sort(patches, n_grain);
     throats_free(&throats);
+    patches_sort(patches, n_grain);
     return status;
 }
