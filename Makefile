@@ -72,7 +72,7 @@ LIBS = $(or $(STATIC_LIBS),$(SHARED_LIBS)) -lgsl -lgslcblas -ljansson -lcrypto -
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
 	libjansson-dev libssl-dev zlib1g-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
-	libcmocka-dev perl python3-h5py python3-scipy python3-vtk9 hdf5-tools voro++ qhull-bin time \
+	libcmocka-dev perl python3-h5py python3-scipy python3-pil python3-vtk9 hdf5-tools voro++ qhull-bin time \
 	chromium python3-websockets coop-computing-tools
 
 # --- `make deps demo`: first things first ---------------------------------------------
@@ -227,7 +227,7 @@ pipeline_library := $(filter-out %.pyc,$(wildcard pipelines/lib/*.*))
 # $1 is a table or a picture that pipelines/$2 makes of the files $3. It is called with these, or
 # with the words $4 where they are given, and with $1.
 report = $(call artifact,$1,stage=$2 version=1,$(wildcard pipelines/$2 pipelines/$2.gp \
-	pipelines/$2-*.awk pipelines/$2.awk $(pipeline_library)) $3,pipelines/$2 \
+	pipelines/$2-*.gp pipelines/$2-*.awk pipelines/$2.awk $(pipeline_library)) $3,pipelines/$2 \
 	$(or $4,$3) $1,$(BUILD)/bin/inspect)
 
 # The words $1 in their order, each once.

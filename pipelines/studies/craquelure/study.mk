@@ -2,7 +2,7 @@
 # A layer that shrinks as it dries and parts into polygons:
 #
 #     make craquelure                          ->  build/runs/craquelure-40/polygons.png, drying.png,
-#                                                  table.md
+#                                                  film.gif, table.md
 #     make craquelure CRAQUELURE_SEEDS="1 2 3" ->  the same of the first, the table over all packings
 #     make craquelure SCENE=samples/x.json     ->  the same for another scene
 
@@ -13,7 +13,7 @@ craquelure := $(RUNS)/$(basename $(notdir $(craquelure_scene)))
 
 craquelure: ## a layer that cracks into polygons as it shrinks (a minute of one core)
 
-ifneq ($(filter craquelure $(craquelure)/polygons.png $(craquelure)/drying.png $(craquelure)/table.md,$(MAKECMDGOALS)),)
+ifneq ($(filter craquelure $(craquelure)/polygons.png $(craquelure)/drying.png $(craquelure)/film.gif $(craquelure)/table.md,$(MAKECMDGOALS)),)
 craquelure_seeds := $(or $(call once_each,$(CRAQUELURE_SEEDS)),$(shell jq -r '.pack.seed // 1 | floor' $(craquelure_scene)))
 # The layer of seed $1, in a folder of its own.
 define craquelure_layer
@@ -26,7 +26,8 @@ $(call crackstats,$(craquelure)/crackstats.json,$(craquelure_scene),polygons=tru
 craquelure_files := $(firstword $(craquelure_responses)) $(craquelure)/crackstats.json
 $(call report,$(craquelure)/polygons.png,studies/craquelure/report,$(craquelure_files),polygons $(craquelure_files))
 $(call report,$(craquelure)/drying.png,studies/craquelure/report,$(craquelure_files),drying $(craquelure_files))
+$(call report,$(craquelure)/film.gif,studies/craquelure/report,$(craquelure_files),film $(craquelure_files))
 $(call report,$(craquelure)/table.md,studies/craquelure/report,$(craquelure_files),table $(craquelure_files))
 
-$(call study,craquelure,$(craquelure)/table.md $(craquelure)/polygons.png $(craquelure)/drying.png)
+$(call study,craquelure,$(craquelure)/table.md $(craquelure)/polygons.png $(craquelure)/drying.png $(craquelure)/film.gif)
 endif
