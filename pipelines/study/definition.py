@@ -56,6 +56,11 @@ class Study:
     measures: list
     seed_keys: list = field(default_factory=list)
 
+    @property
+    def liquid(self):
+        """Whether something dries."""
+        return self.said.get("liquid", True)
+
 
 def located(name, beside):
     """The file NAME: beside the file that names it, here, or of the tree."""

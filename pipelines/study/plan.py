@@ -30,9 +30,9 @@ class Artifact:
         return stages.MADE[self.kind][0]
 
 
-def before(kind):
+def before(kind, liquid):
     """The kinds that KIND is made from, it last."""
-    return [*dict.fromkeys(k for each in stages.MADE[kind][1] for k in before(each)), kind]
+    return [*dict.fromkeys(k for each in stages.made_from(kind, liquid) for k in before(each, liquid)), kind]
 
 
 def kinds_wanted(study):
@@ -41,7 +41,7 @@ def kinds_wanted(study):
     keep = study.said.get("keep", "all")
     ends += keep if keep != "all" else []
     ends += ["crackstats"] if study.said.get("groups") else []
-    wanted = {kind for end in ends for kind in before(end)}
+    wanted = {kind for end in ends for kind in before(end, study.liquid)}
     return [kind for kind in stages.MADE if kind in wanted]
 
 
@@ -79,9 +79,9 @@ class Plan:
     def artifacts_of(self, run):
         made = {}
         for kind in self.kinds:
-            stage, sources, _ = stages.MADE[kind]
+            stage = stages.MADE[kind][0]
             scene = scene_of(run, stage)
-            inputs = [made[source] for source in sources]
+            inputs = [made[source] for source in stages.made_from(kind, self.study.liquid)]
             if kind == "packing" and run.grains:
                 inputs = [run.grains]
             made[kind] = self.add(kind, scene, stages.sets_of(stage, scene, run.overrides), inputs)
@@ -92,7 +92,7 @@ class Plan:
         groups = []
         for point in range(len(self.study.points)):
             mine = [(run, made) for run, made in zip(self.study.runs, self.runs) if run.point == point]
-            inputs = tuple(made[kind] for _, made in mine for kind in ("response", "drying"))
+            inputs = tuple(made[kind] for _, made in mine for kind in stages.made_from("crackstats", self.study.liquid))
             run = mine[0][0]
             scene = scene_of(run, "crackstats")
             group = Artifact("crackstats", f"groups/{point + 1}.json", scene, stages.sets_of("crackstats", scene, run.overrides), inputs)

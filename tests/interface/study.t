@@ -190,6 +190,24 @@ if shutil.which("makeflow"):
 else:
     ok(True, "rules of Makeflow # SKIP no makeflow is installed")
 
+# ---- grains that shrink without liquid ------------------------------------------------------------------
+
+with open("samples/craquelure-40.json", encoding="utf-8") as lines:
+    layer = json.load(lines)
+layer["pack"]["upper"] = [5.2e-6, 5.2e-6, 4.68e-6]
+layer["dem-replay"].update(cycles=16, most_cycles=32, snapshots=[0])
+layer["dem-replay"]["shrinkage"]["steps"] = 6
+write("layer.json", layer)
+write("shrinking.json", {"scene": "layer.json", "liquid": False, "axes": [{"key": "dem-replay.shrinkage.strain", "values": [0.03, 0.05]}],
+                         "measure": [{"path": "cracks.total", "title": "cracks"}]})
+fine, counts, said, _ = study("make", "shrinking.json")
+run("pack", "-p", at("layer.json"), "-o", at("layer.h5"))
+run("dem-replay", "-p", at("layer.json"), "--set", "shrinkage.strain=0.05", at("layer.h5"), "-o", at("shrunk.h5"))
+with h5py.File(at("shrunk.h5")) as file:
+    broken = len(file["cracks/saturation"])
+ok(fine and counts == {"packing": 1, "response": 2, "crackstats": 2} and broken > 0
+   and column(table("shrinking"), "cracks.total")[1] == broken, "liquid: false: a packing, replayed as it shrinks", f"{counts} {said} {broken}")
+
 # ---- bad input: a line that says where, before anything is made ----------------------------------------
 
 def refused(title, status, wanted, name, content, *words):
