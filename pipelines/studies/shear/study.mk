@@ -5,7 +5,7 @@
 #     make shear                      ->  build/runs/shear/shear.md and pictures (an hour of one core)
 #     make shear SHEAR_SEEDS="1 2 3"  ->  the same for three packings, with intervals
 #     make shear SHEAR_MODELS=table   ->  with the exact bridge alone
-#     make shear SHEAR_SCENE=samples/split-bottom-full.json   ->  the cell of [G], 193,000 beads (days)
+#     make shear SHEAR_SCENE=samples/split-bottom-full.json   ->  the cell of [G], 193,000 beads (7 hours of one core)
 
 SHEAR_SCENE ?= samples/split-bottom.json
 SHEAR_SEEDS ?= 1# packings
