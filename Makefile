@@ -72,8 +72,8 @@ LIBS = $(or $(STATIC_LIBS),$(SHARED_LIBS)) -lgsl -lgslcblas -ljansson -lcrypto -
 
 PACKAGES := gcc g++ pkg-config libhdf5-dev libcgal-dev libsuitesparse-dev libgsl-dev \
 	libjansson-dev libssl-dev zlib1g-dev libgmp-dev libmpfr-dev jq gnuplot-nox librsvg2-bin \
-	libcmocka-dev perl python3-h5py python3-scipy python3-pil python3-vtk9 hdf5-tools voro++ qhull-bin time \
-	chromium python3-websockets coop-computing-tools
+	libcmocka-dev perl python3-h5py python3-scipy python3-pil python3-vtk9 hdf5-tools voro++ qhull-bin \
+	time chromium python3-websockets coop-computing-tools
 
 # --- `make deps demo`: first things first ---------------------------------------------
 # What is stale is decided while parsing, with jq and the compiler at hand. So when `deps` or

@@ -17,8 +17,8 @@ MADE = {"packing": ("pack", [], "h5"), "check": ("check", ["packing"], "json"),
         "response": ("dem-replay", ["forces"], "h5"), "crackstats": ("crackstats", ["response", "drying"], "json"),
         "motion": ("simulate", ["packing"], "h5"), "shearstats": ("shearstats", ["motion"], "h5"),
         "rings": ("rings", ["packing"], "json")}
-# Of a study without liquid: grains that shrink are replayed as they are packed.
-DRY_MADE_FROM = {"response": ["packing"], "crackstats": ["response"]}
+# What a study without liquid makes of other kinds: grains that shrink are replayed as they are packed.
+WITHOUT_LIQUID = {"response": ["packing"], "crackstats": ["response"]}
 STAGES = {stage: kind for kind, (stage, _, _) in MADE.items()}
 # Stages that take what they lack from the section conditions.
 SHARING = ("dry", "invade", "force-protocol", "dem-replay", "bridge", "rings")
@@ -29,9 +29,9 @@ DRAWN = {"dry.throat_radius.seed": lambda s: s.get("throat_radius", {}).get("dis
          "dem-replay.bond.strength.seed": lambda s: s.get("bond", {}).get("strength", {}).get("distribution", "one") != "one"}
 
 
-def made_from(kind, liquid=True):
+def made_from(kind, liquid):
     """The kinds that KIND is made from."""
-    return MADE[kind][1] if liquid else DRY_MADE_FROM.get(kind, MADE[kind][1])
+    return MADE[kind][1] if liquid else WITHOUT_LIQUID.get(kind, MADE[kind][1])
 
 
 # Stages whose programs may be replaced, by the variables of make, as DRY.

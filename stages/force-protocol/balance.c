@@ -286,6 +286,7 @@ static double pulls_squared(const struct throats *throats)
     return sum;
 }
 
+// MULTIPLIER is 0 and NOW balanced with it.
 static enum status find_multipliers(struct throats *throats, struct vector *multiplier,
                                     struct reason *reason)
 {
@@ -296,7 +297,6 @@ static enum status find_multipliers(struct throats *throats, struct vector *mult
     struct linear_problem problem = {n, &rows, multiply, precondition, {0}};
     for (int k = 0; k < 3; k++)
         problem.work[k] = NEW_ARRAY(double, n);
-    balance(throats, multiplier);
     sum_up(throats, residual);
     const double tolerance = 1e-15 * sqrt(pulls_squared(throats));
     const int count =

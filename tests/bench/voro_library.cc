@@ -2,15 +2,13 @@
 // The library of voro++ on points in the unit box, without text: what a program that links it
 // would pay for the cells of its grains.
 //
-//     voro_library volumes|cells POINTS    POINTS: lines of a number and three coordinates
+//     voro_library POINTS    lines of a number and three coordinates
 //
-// volumes: of the cells. cells: also their vertices, faces and neighbours, as a pore network
-// needs them. Prints the sum of the volumes (1) and the number of faces, so that nothing can be
-// left out.
+// Cells with their vertices, faces and neighbours, as a pore network needs them. Prints the sum
+// of their volumes (1) and the number of faces, so that nothing can be left out.
 #include <voro++/voro++.hh>
 
 #include <cstdio>
-#include <cstring>
 #include <vector>
 
 struct sums {
@@ -39,8 +37,8 @@ static void add_cells(voro::container &box, sums &sums)
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) return 64;
-    FILE *file = std::fopen(argv[2], "r");
+    if (argc != 2) return 64;
+    FILE *file = std::fopen(argv[1], "r");
     if (!file) return 66;
     int id;
     double x, y, z;
@@ -53,10 +51,7 @@ int main(int argc, char **argv)
     voro::container box(0, 1, 0, 1, 0, 1, nx, ny, nz, false, false, false, 8);
     points.setup(box);
     sums sums;
-    if (std::strcmp(argv[1], "volumes") == 0)
-        sums.volume = box.sum_cell_volumes();
-    else
-        add_cells(box, sums);
+    add_cells(box, sums);
     std::printf("%.12g %ld\n", sums.volume, sums.faces);
     return 0;
 }

@@ -13,7 +13,7 @@ craquelure := $(RUNS)/$(basename $(notdir $(craquelure_scene)))
 
 craquelure: ## a layer that cracks into polygons as it shrinks (a minute of one core)
 
-ifneq ($(filter craquelure $(craquelure)/polygons.png $(craquelure)/drying.png $(craquelure)/film.gif $(craquelure)/table.md,$(MAKECMDGOALS)),)
+ifneq ($(call asked,craquelure,$(craquelure)),)
 craquelure_seeds := $(or $(call once_each,$(CRAQUELURE_SEEDS)),$(shell jq -r '.pack.seed // 1 | floor' $(craquelure_scene)))
 # The layer of seed $1, in a folder of its own.
 define craquelure_layer

@@ -174,26 +174,21 @@ void dense_front_add_row(struct dense_front *dense, int n)
     clear_pending(dense, n);
 }
 
-// Column P of rows BEGIN..END-1 of one panel, which are LENGTH numbers apart. Each is
-// in a cache line of its own, which the processor does not foresee.
-#define COPY_COLUMN(type)                                                              \
-    do {                                                                               \
-        const type *from = (const type *)dense->entry + at;                            \
-        for (int i = begin; i < end; i++, from += length) {                            \
-            __builtin_prefetch(from + 24 * length);                                    \
-            row[i] = (double)*from;                                                    \
-        }                                                                              \
-    } while (0)
-
-static void copy_column(const struct dense_front *dense, int begin, int end, int p,
-                        double *row)
+// Column P below the diagonal, of a large one. Rows of a panel are LENGTH numbers
+// apart: each is in a cache line of its own, which the processor does not foresee.
+static void copy_column(const struct dense_front *dense, int n, int p, double *row)
 {
-    const size_t at = dense_front_row(dense, begin) + (size_t)p;
-    const size_t length = ((size_t)begin / PANEL + 1) * PANEL;
-    if (dense->is_rounded)
-        COPY_COLUMN(float);
-    else
-        COPY_COLUMN(double);
+    enum { AHEAD = 24 };
+    for (int i = p + 1; i < n;) {
+        const int end = (i / PANEL + 1) * PANEL;
+        const size_t length = (size_t)end;
+        size_t at = dense_front_row(dense, i) + (size_t)p;
+        for (; i < end && i < n; i++, at += length) {
+            __builtin_prefetch((char *)dense->entry +
+                               (at + AHEAD * length) * entry_size(dense));
+            row[i] = dense_front_number(dense, at);
+        }
+    }
 }
 
 void dense_front_copy_row(const struct dense_front *dense, int n, int p, double *row)
@@ -201,12 +196,11 @@ void dense_front_copy_row(const struct dense_front *dense, int n, int p, double 
     for (int j = 0; j < p; j++)
         row[j] = dense_front_entry(dense, p, j);
     row[p] = 0;
-    for (int i = p + 1; i < n && !dense->is_large; i++)
-        row[i] = dense_front_entry(dense, i, p);
-    for (int i = p + 1, end; i < n && dense->is_large; i = end) {
-        end = (i / PANEL + 1) * PANEL < n ? (i / PANEL + 1) * PANEL : n;
-        copy_column(dense, i, end, p, row);
-    }
+    if (dense->is_large)
+        copy_column(dense, n, p, row);
+    else
+        for (int i = p + 1; i < n; i++)
+            row[i] = dense_front_entry(dense, i, p);
     if (dense->n_pending == 0) return;
     gather_pending(dense, n, p, row);
     row[p] = 0;

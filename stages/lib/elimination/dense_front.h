@@ -10,8 +10,8 @@
 #include <stddef.h>
 
 // Updates that may be pending; rows in a panel; bytes of a row in a block of pending
-// rows (72 doubles or 144 floats); rows from which on threads share the work. Each entry
-// is one thread's, so results do not depend on their number.
+// rows (72 doubles or 144 floats); rows from which on threads share the work. Each
+// entry is one thread's, so results do not depend on their number.
 enum { MAX_PENDING = 64, PANEL = 48, BLOCK_BYTES = 576, SHARED_FRONT = 1024 };
 
 // Entries i > j, row by row. Small: packed, doubles. Large: rows lie in panels, all as
@@ -42,13 +42,17 @@ static inline size_t dense_front_row(const struct dense_front *dense, int i)
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
-// Entry (I, J), J < I, without pending updates. In double precision, whatever entries
-// are.
-static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
+// Number AT of the entries, in double precision, whatever they are.
+static inline double dense_front_number(const struct dense_front *dense, size_t at)
 {
-    const size_t at = dense_front_row(dense, i) + (size_t)j;
     return dense->is_rounded ? (double)((float *)dense->entry)[at]
                              : ((double *)dense->entry)[at];
+}
+
+// Entry (I, J), J < I, without pending updates.
+static inline double dense_front_entry(const struct dense_front *dense, int i, int j)
+{
+    return dense_front_number(dense, dense_front_row(dense, i) + (size_t)j);
 }
 
 // Entry (I, J), J < I, becomes X, rounded where entries are floats.
