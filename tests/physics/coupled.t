@@ -108,7 +108,7 @@ with scratch() as folder:
     for turn in range(100):
         part = subprocess.Popen([*command, "--checkpoint", at("kept"), "-o", at("stopped")], stderr=subprocess.DEVNULL)
         try:
-            if part.wait(0.15 * 1.05**turn) == 0:
+            if part.wait(0.08 * 1.05**turn) == 0:
                 break
         except subprocess.TimeoutExpired:
             part.terminate()
