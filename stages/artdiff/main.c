@@ -71,7 +71,7 @@ static void compare_json(struct comparison *comparison, struct bytes bytes[2])
     json_t *document[2];
     for (int k = 0; k < 2; k++) {
         document[k] = document_of(comparison->names[k], &bytes[k]);
-        free(bytes[k].data);
+        bytes_free(&bytes[k]);
     }
     compare_documents(comparison, document[0], document[1]);
     for (int k = 0; k < 2; k++)

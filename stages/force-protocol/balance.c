@@ -24,7 +24,6 @@ struct corner {
     int32_t throat, grain;
     struct vector arm;  // from the middle of the throat to the grain
     struct vector pull; // f0, then f
-    struct vector now;  // the last result of balance
 };
 
 // The displacements of a grain in three rotations of the grains around a throat,
@@ -38,6 +37,7 @@ struct throats {
     int n_throat, n_grain, n_corner, capacity;
     int most;              // corners of a throat
     struct corner *corner; // (n_corner)
+    struct vector *now;    // (n_corner) the last result of balance; NULL: none is kept
     int *first;            // (n_throat+1) corners of each throat
     int *begin, *corners;  // (n_grain+1) into CORNERS (n_corner): corners of each grain
     bool *supported;       // (n_throat) a wall takes the rigid part: P is 1
@@ -47,6 +47,7 @@ struct throats {
 static void throats_free(struct throats *throats)
 {
     free(throats->corner);
+    free(throats->now);
     free(throats->first);
     free(throats->begin);
     free(throats->corners);
@@ -173,38 +174,40 @@ static void find_rotations(const struct corner *corner, int n,
     }
 }
 
-// Removes the rigid part of NOW. ROTATIONS (n): workspace.
-static void project(struct corner *corner, int n, struct rotations *rotations)
+// Removes the rigid part of NOW (n). ROTATIONS (n): workspace.
+static void project(const struct corner *corner, int n, struct rotations *rotations,
+                    struct vector *now)
 {
     struct vector mean = {0};
     double share[3] = {0};
     find_rotations(corner, n, rotations);
     for (int c = 0; c < n; c++) {
-        mean = add(mean, scale(1.0 / n, corner[c].now));
+        mean = add(mean, scale(1.0 / n, now[c]));
         for (int k = 0; k < 3; k++)
-            share[k] += dot(corner[c].now, rotations[c].of[k]);
+            share[k] += dot(now[c], rotations[c].of[k]);
     }
     for (int c = 0; c < n; c++) {
-        corner[c].now = subtract(corner[c].now, mean);
+        now[c] = subtract(now[c], mean);
         for (int k = 0; k < 3; k++)
-            corner[c].now =
-                subtract(corner[c].now, scale(share[k], rotations[c].of[k]));
+            now[c] = subtract(now[c], scale(share[k], rotations[c].of[k]));
     }
 }
 
 // NOW = P (pull - MULTIPLIER of the grain).
 static void balance(struct throats *throats, const struct vector *multiplier)
 {
+    if (!throats->now) throats->now = NEW_ARRAY(struct vector, throats->n_corner);
 #pragma omp parallel
     {
         struct rotations *rotations = NEW_ARRAY(struct rotations, throats->most);
 #pragma omp for
         for (int t = 0; t < throats->n_throat; t++) {
             const int n = throats->first[t + 1] - throats->first[t];
-            struct corner *corner = &throats->corner[throats->first[t]];
+            const struct corner *corner = &throats->corner[throats->first[t]];
+            struct vector *now = &throats->now[throats->first[t]];
             for (int c = 0; c < n; c++)
-                corner[c].now = subtract(corner[c].pull, multiplier[corner[c].grain]);
-            if (!throats->supported[t]) project(corner, n, rotations);
+                now[c] = subtract(corner[c].pull, multiplier[corner[c].grain]);
+            if (!throats->supported[t]) project(corner, n, rotations, now);
         }
         free(rotations);
     }
@@ -220,7 +223,7 @@ static void sum_up(const struct throats *throats, struct vector *sum)
         sum[i] = (struct vector){0};
         if (!throats->closed[i]) continue;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
-            sum[i] = add(sum[i], throats->corner[throats->corners[k]].now);
+            sum[i] = add(sum[i], throats->now[throats->corners[k]]);
     }
 }
 
@@ -286,18 +289,21 @@ static double pulls_squared(const struct throats *throats)
     return sum;
 }
 
-// MULTIPLIER is 0 and NOW balanced with it.
+// MULTIPLIER is 0 and NOW balanced with it. NOW is given up before the matrix, which is
+// as large, is assembled.
 static enum status find_multipliers(struct throats *throats, struct vector *multiplier,
                                     struct reason *reason)
 {
     static const int most = 10000;
     const int n = 3 * throats->n_grain;
     struct vector *residual = NEW_ARRAY(struct vector, throats->n_grain);
+    sum_up(throats, residual);
+    free(throats->now);
+    throats->now = NULL;
     struct block_rows rows = assemble(throats);
     struct linear_problem problem = {n, &rows, multiply, precondition, {0}};
     for (int k = 0; k < 3; k++)
         problem.work[k] = NEW_ARRAY(double, n);
-    sum_up(throats, residual);
     const double tolerance = 1e-15 * sqrt(pulls_squared(throats));
     const int count =
         conjugate_gradients(&problem, &residual->x, &multiplier->x, tolerance, most);
@@ -321,7 +327,7 @@ static double change_of(const struct throats *throats)
     double sum = 0;
     for (int k = 0; k < throats->n_corner; k++) {
         const struct corner *corner = &throats->corner[k];
-        const struct vector change = subtract(corner->now, corner->pull);
+        const struct vector change = subtract(throats->now[k], corner->pull);
         sum += dot(change, change);
     }
     const double all = pulls_squared(throats);
@@ -341,7 +347,7 @@ static enum status balance_pulls(struct throats *throats, double *change,
         balance(throats, multiplier);
         *change = change_of(throats);
         for (int k = 0; k < throats->n_corner; k++)
-            throats->corner[k].pull = throats->corner[k].now;
+            throats->corner[k].pull = throats->now[k];
     }
     free(multiplier);
     return status;
@@ -363,6 +369,8 @@ enum status find_balanced_patches(struct sectors *sectors, enum form form,
     list_by_grain(&throats);
     find_closed(&throats);
     const enum status status = balance_pulls(&throats, change, reason);
+    free(throats.now);
+    throats.now = NULL;
     *patches = (struct patches){0};
     for (int k = 0; k < throats.n_corner && !status; k++)
         patches_add(patches, throats.corner[k].throat, throats.corner[k].grain,

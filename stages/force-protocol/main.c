@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // force-protocol: the capillary force on every grain over the time of drying.
 //
-// In this order: read the drying; complete the liquid from it; find the law of suction
-// and the weight of the liquid; find the sectors around throats, and from them what
-// each throat's load does to each grain, and the rings (find_action); choose the times
-// and sum the loads at each (find_protocol); leave out auxiliary grains; write.
+// In this order: read the network; complete the liquid from the drying; find the law of
+// suction; find the sectors around throats, and from them what each throat's load does
+// to each grain, and the rings (find_action); read the drying, and find the weight of
+// the liquid; choose the times and sum the loads at each (find_protocol); leave out
+// auxiliary grains; write.
 //
 // For a liquid with surface tension gamma and contact angle theta
 //
@@ -20,8 +21,9 @@
 //
 // Why this order: what a throat does to a grain (its patches) depends on geometry alone
 // and is found once; what the liquid does (its loads) changes with time. So a force is
-// a short sum at each time. Auxiliary grains bound cells and must be there until all
-// forces are summed. The size of the result is checked before it is allocated.
+// a short sum at each time. The drying is read when the balance of the patches, which
+// takes the most memory, is over. Auxiliary grains bound cells and must be there until
+// all forces are summed. The size of the result is checked before it is allocated.
 #include "artifacts/artifact.h"
 #include "artifacts/liquid.h"
 #include "auxiliary.h"
@@ -198,16 +200,14 @@ static double gravity_of_drying(const struct artifact *input)
 // The density follows from the mass of liquid and the volume it filled, so that it is
 // that of the drying.
 static void find_weight(const struct network *network,
-                        const struct liquid_record *record,
-                        struct force_parameters *parameters,
+                        const struct liquid_record *record, double gravity,
                         const struct artifact *input, struct suction_law *law)
 {
     struct reason reason;
-    if (isnan(parameters->gravity)) parameters->gravity = gravity_of_drying(input);
-    if (check_gravity(network, parameters->gravity, &reason))
+    if (check_gravity(network, gravity, &reason))
         die(STATUS_BAD_DATA, "force-protocol.%s", reason.text);
     const double mass = artifact_get_number(input, "/summary/liquid_mass");
-    law->weight = parameters->gravity * liquid_density(network, &record->drying, mass);
+    law->weight = gravity * liquid_density(network, &record->drying, mass);
 }
 
 // Balancing corrects the suction's patches alone: contact lines and weights have no
@@ -411,13 +411,10 @@ int main(int argc, char **argv)
     omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
-    struct liquid_record record =
-        read_record(input, &network, parameters.suction == SUCTION_FIELD);
-    check_end(&record.drying, (double)parameters.steps, input->path);
     char difference[300], model[1400];
     complete_liquid(&parameters, input, difference, sizeof difference);
     struct suction_law law = find_law(&network, &parameters, input->path);
-    find_weight(&network, &record, &parameters, input, &law);
+    if (isnan(parameters.gravity)) parameters.gravity = gravity_of_drying(input);
     if (*difference && !invocation.quiet) report("%s", difference);
 
     struct sectors sectors;
@@ -433,6 +430,10 @@ int main(int argc, char **argv)
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     sectors_free(&sectors);
 
+    struct liquid_record record =
+        read_record(input, &network, parameters.suction == SUCTION_FIELD);
+    check_end(&record.drying, (double)parameters.steps, input->path);
+    find_weight(&network, &record, parameters.gravity, input, &law);
     const struct process process = {&network, &record, &law, &loads};
     struct protocol protocol = find_protocol(&process, &parameters);
     const struct findings found = examine(&process, &protocol, input->path);

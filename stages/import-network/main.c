@@ -58,7 +58,7 @@ static struct bytes read_input(const char *path, const char *schema, json_t *inp
 // A key given twice is refused: jansson would keep the last and say nothing.
 static struct network import_jsongraph(const char *path, json_t *inputs)
 {
-    const struct bytes bytes = read_input(path, "jsongraph", inputs);
+    struct bytes bytes = read_input(path, "jsongraph", inputs);
     json_error_t error;
     json_t *document = json_loadb((const char *)bytes.data, bytes.size,
                                   JSON_REJECT_DUPLICATES, &error);
@@ -70,7 +70,7 @@ static struct network import_jsongraph(const char *path, json_t *inputs)
     const enum status status = network_from_jsongraph(document, &network, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
     json_decref(document);
-    free(bytes.data);
+    bytes_free(&bytes);
     return network;
 }
 
@@ -80,12 +80,12 @@ static char *read_text(const char *prefix, int file, json_t *inputs)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s%s", prefix, statoil_endings[file]);
-    const struct bytes bytes = read_input(path, "text", inputs);
+    struct bytes bytes = read_input(path, "text", inputs);
     char *text = allocate(bytes.size + 1, 1);
     memcpy(text, bytes.data, bytes.size);
     if (strlen(text) < bytes.size)
         die(STATUS_BAD_DATA, "%s: holds null bytes: not text", path);
-    free(bytes.data);
+    bytes_free(&bytes);
     return text;
 }
 

@@ -94,7 +94,7 @@ int main(int argc, char **argv)
             die(STATUS_USAGE, "%s: is JSON: read it with jq",
                 input_name(options.input));
         write_json("-", document_of(options.input, &bytes));
-        free(bytes.data);
+        bytes_free(&bytes);
         return STATUS_OK;
     }
     struct artifact *artifact = artifact_open_bytes(options.input, bytes, NULL);

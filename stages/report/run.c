@@ -101,7 +101,7 @@ static void keep(struct run *run, const char *path)
     struct bytes bytes = read_whole_of(path, may_be_either);
     if (is_document(&bytes)) {
         keep_document(run, path, &bytes);
-        free(bytes.data);
+        bytes_free(&bytes);
         return;
     }
     char *name = duplicate(path, strlen(path) + 1, 1); // lives as long as the artifact

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opening an artifact: the bytes are taken as an HDF5 file in memory; links, kind,
+// Opening an artifact: its bytes are taken as an image of an HDF5 file; links, kind,
 // schema and every value are checked before anything is used. A child process does all
 // of that first, since a damaged file may crash the HDF5 library; what it survived the
 // program repeats. The getters come after; what they read has been checked.
 //
-// Opening in order: all bytes into memory; the signature of HDF5; in the child the
-// links (check_links.c), the attribute `schema` of the root, every dataset and
-// attribute that the schema lists (check.c) and the provenance; then once more here
+// Opening in order: all bytes, mapped or from a pipe; the signature of HDF5; in the
+// child the links (check_links.c), the attribute `schema` of the root, every dataset
+// and attribute that the schema lists (check.c) and the provenance; then once more here
 // without the checks; last the SHA-256 of the bytes, by which other artifacts name this
 // one as their input.
 //
@@ -190,6 +190,7 @@ struct artifact *artifact_open_bytes(const char *path, struct bytes bytes,
     check_apart(artifact, name);
     open_unchecked(artifact, name);
     sha256(artifact->image.data, artifact->image.size, artifact->sha256);
+    release_pages(&artifact->image);
     return artifact;
 }
 
@@ -199,7 +200,7 @@ void artifact_close(struct artifact *artifact)
     if (!artifact) return;
     H5Fclose(artifact->file);
     schema_free(artifact->schema);
-    free(artifact->image.data);
+    bytes_free(&artifact->image);
     free(artifact);
 }
 
@@ -223,6 +224,7 @@ void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
         die(STATUS_BAD_DATA, "%s: %s: cannot be read", input_name(artifact->path),
             name);
     H5Dclose(dataset);
+    release_pages(&artifact->image);
     if (rows) *rows = (int)extent[0];
     return data;
 }

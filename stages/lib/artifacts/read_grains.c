@@ -58,14 +58,14 @@ static bool may_hold_grains(const struct bytes *beginning)
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
                            bool *has_box, json_t *inputs)
 {
-    const struct bytes bytes = read_whole_of(path, may_hold_grains);
+    struct bytes bytes = read_whole_of(path, may_hold_grains);
     if (!bytes.size && !strcmp(path, "-"))
         die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
                              "an input, make run from IMPORT=FILE");
     if (has_box) *has_box = is_hdf5(&bytes) || is_lammps(&bytes);
     if (is_hdf5(&bytes)) return read_artifact(path, bytes, schema, inputs);
     const struct packing packing = read_lines(path, bytes, frame, inputs);
-    free(bytes.data);
+    bytes_free(&bytes);
     return packing;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reading takes what comes until the end, for pipes have no size. Writing: what is new
+// Reading maps a file, so that its bytes take no memory, and takes what comes until the
+// end from pipes, which have no size. Writing: what is new
 // has no name (O_TMPFILE) or is in memory, is synced, and then takes the place of the
 // old by link or rename, which are atomic. Where the file system knows no nameless
 // files it gets another name in the same folder instead. Standard output and devices
@@ -36,16 +37,50 @@ static int open_input(const char *path)
     return descriptor;
 }
 
-struct bytes read_whole_of(const char *path,
-                           bool (*goes_on)(const struct bytes *beginning))
+// A file that is made shorter in place while it is mapped. Nothing else raises SIGBUS.
+static void say_cut_short(int signal)
+{
+    static const char line[] = "an input was cut short while it was read\n";
+    (void)signal;
+    if (write(STDERR_FILENO, line, sizeof line - 1) >= 0) _exit(STATUS_IO);
+    _exit(STATUS_IO);
+}
+
+// False for what cannot be mapped: pipes, devices, standard input that was read in
+// part, and files without a byte.
+static bool map_file(int descriptor, struct bytes *bytes)
+{
+    struct stat information;
+    if (fstat(descriptor, &information) || !S_ISREG(information.st_mode)) return false;
+    if (information.st_size == 0 || lseek(descriptor, 0, SEEK_CUR) != 0) return false;
+    const size_t size = (size_t)information.st_size;
+    void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (data == MAP_FAILED) return false;
+    signal(SIGBUS, say_cut_short);
+    *bytes = (struct bytes){.data = data, .size = size, .mapped = true};
+    return true;
+}
+
+void bytes_free(struct bytes *bytes)
+{
+    if (bytes->mapped)
+        munmap(bytes->data, bytes->size);
+    else
+        free(bytes->data);
+    *bytes = (struct bytes){0};
+}
+
+void release_pages(const struct bytes *bytes)
+{
+    if (bytes->mapped) madvise(bytes->data, bytes->size, MADV_DONTNEED);
+}
+
+static struct bytes read_stream(int descriptor, const char *path,
+                                bool (*goes_on)(const struct bytes *beginning))
 {
     enum { SIGNATURE = 8 };
     bool asked = !goes_on;
-    const int descriptor = open_input(path);
-    struct stat information;
     size_t capacity = 1 << 16;
-    if (!fstat(descriptor, &information) && S_ISREG(information.st_mode))
-        capacity = (size_t)information.st_size + 1; // one more, to see the end at once
     struct bytes bytes = {.data = reallocate(NULL, capacity, 1)};
     for (;;) {
         const ssize_t got =
@@ -60,6 +95,15 @@ struct bytes read_whole_of(const char *path,
         if (bytes.size == capacity)
             bytes.data = reallocate(bytes.data, capacity *= 2, 1);
     }
+    return bytes;
+}
+
+struct bytes read_whole_of(const char *path,
+                           bool (*goes_on)(const struct bytes *beginning))
+{
+    const int descriptor = open_input(path);
+    struct bytes bytes;
+    if (!map_file(descriptor, &bytes)) bytes = read_stream(descriptor, path, goes_on);
     if (descriptor != STDIN_FILENO) close(descriptor);
     return bytes;
 }

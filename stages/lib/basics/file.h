@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whole files in memory, in and out.
+// Whole files, in and out.
 #ifndef CRAQUELURE_FILE_H
 #define CRAQUELURE_FILE_H
 
@@ -7,14 +7,19 @@
 #include <stddef.h>
 
 struct bytes {
-    unsigned char *data;
+    unsigned char *data; // read only where mapped
     size_t size;
+    bool mapped; // the pages of a file, which take no memory of ours
 };
 
-// All of PATH, or of standard input for "-"; the beginning where the first byte is 0,
-// as of nothing that we read. Exits 66 when there is no such file, 74 when reading
-// fails. The caller frees .data.
+// All of PATH, or of standard input for "-"; of a pipe or device the beginning where
+// the first byte is 0, as of nothing that we read. Exits 66 when there is no such file,
+// 74 when reading fails. The caller frees it by bytes_free.
 struct bytes read_whole(const char *path);
+void bytes_free(struct bytes *bytes);
+
+// Gives pages back until they are read again; nothing where the bytes are not mapped.
+void release_pages(const struct bytes *bytes);
 
 // The same, but only the beginning of what GOES_ON says no to, which is asked once
 // there are 8 bytes: what follows may have no end.

@@ -233,7 +233,7 @@ static json_t *load_json(const char *path)
     json_error_t error;
     json_t *json = json_loadb((const char *)bytes.data, bytes.size,
                               JSON_REJECT_DUPLICATES, &error);
-    free(bytes.data);
+    bytes_free(&bytes);
     if (!json)
         die(STATUS_BAD_DATA, "%s: line %d, column %d: %s", path, error.line,
             error.column, error.text);
