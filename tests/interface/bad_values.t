@@ -25,6 +25,21 @@ damage("an infinite length is named by its row", "network",
        "/throats/length: row 74: must be finite, got -inf")
 damage("NaN in a force is named by its time", "forces",
        value("force", (2, 7, 0), numpy.nan), "/force: row 2: must be finite, got -?nan")
+
+
+def packed(row, grain):
+    """The forces in deflated chunks, of which a value in one of the last is no number."""
+    def change(file):
+        data = file["force"][...]
+        data[row, grain, 1] = numpy.nan
+        del file["force"]
+        file.create_dataset("force", data=data, chunks=(2, 5, 2), compression="gzip")
+
+    return change
+
+
+damage("NaN in packed forces is named by its time", "forces", packed(3, 11),
+       "/force: row 3: must be finite, got -?nan")
 damage("NaN in the summary is named", "response",
        attribute("summary", "first_period_end_time", numpy.nan),
        "/summary/first_period_end_time: .*must be finite, got -?nan")

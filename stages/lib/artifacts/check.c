@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A file against its schema, dataset by dataset: presence, class, shape with its
 // symbols (n_particle and so on, defined where they first occur), range and order of
-// values. Large datasets are read in blocks. The first breach ends the check with its
-// row and value.
+// values. Large datasets are read in blocks, packed ones in chunks. The first breach
+// ends the check with its row and value.
 //
 // Two statuses: STATUS_BAD_DATA is a breach of the schema; STATUS_NO a number too
 // large, or two too near each other, for their squares to be numbers. Results that are
@@ -266,13 +266,16 @@ static enum status check_order(const struct subject *subject, const double *bloc
     return STATUS_OK;
 }
 
+// Part of a dataset: where it begins and how many of each axis.
+struct part {
+    hsize_t start[MOST_RANK], count[MOST_RANK];
+};
+
 // As doubles, whatever the type: exact for integers up to 2^53.
-static bool read_block(const struct subject *subject, hsize_t first_row, hsize_t rows,
-                       double *block)
+static bool read_part(const struct subject *subject, const struct part *part,
+                      double *block)
 {
-    hsize_t start[MOST_RANK] = {first_row}, count[MOST_RANK] = {rows};
-    for (int axis = 1; axis < subject->rank; axis++)
-        count[axis] = subject->extent[axis];
+    const hsize_t *start = part->start, *count = part->count;
     const hid_t file_space = H5Dget_space(subject->dataset);
     const hid_t memory_space = H5Screate_simple(subject->rank, count, NULL);
     H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, NULL, count, NULL);
@@ -281,6 +284,22 @@ static bool read_block(const struct subject *subject, hsize_t first_row, hsize_t
     H5Sclose(memory_space);
     H5Sclose(file_space);
     return result >= 0;
+}
+
+static bool read_block(const struct subject *subject, hsize_t first_row, hsize_t rows,
+                       double *block)
+{
+    struct part part = {.start = {first_row}, .count = {rows}};
+    for (int axis = 1; axis < subject->rank; axis++)
+        part.count[axis] = subject->extent[axis];
+    return read_part(subject, &part, block);
+}
+
+static enum status cannot_be_read(const struct subject *subject, hsize_t row,
+                                  struct reason *reason)
+{
+    return refuse(reason, STATUS_BAD_DATA, "%s: row %llu: cannot be read",
+                  subject->name, (unsigned long long)row);
 }
 
 // Offsets go from 0 to the number of rows that they point into.
@@ -301,12 +320,66 @@ static enum status check_ends(const struct subject *subject, double first, doubl
     return STATUS_OK;
 }
 
+// The chunks of what lies in several beside each other: whole rows would unpack each as
+// often as it has rows. False where there are none, or where rules follow the order of
+// values, which chunks do not keep.
+static bool has_chunks(const struct subject *subject, hsize_t chunk[MOST_RANK])
+{
+    static const char *const ordered[] = {"increasing", "nondecreasing", "offset_into",
+                                          "ascending_rows", "sorted_rows"};
+    const hid_t creation = H5Dget_create_plist(subject->dataset);
+    bool chunks = H5Pget_layout(creation) == H5D_CHUNKED &&
+                  H5Pget_chunk(creation, MOST_RANK, chunk) == subject->rank;
+    H5Pclose(creation);
+    for (int k = 0; k < 5; k++)
+        chunks = chunks && !has(subject, ordered[k]);
+    return chunks && subject->rank > 1 && chunk[1] < subject->extent[1] &&
+           (double)chunk[0] * (double)chunk[1] < 64.0 * BLOCK_VALUES;
+}
+
+// Ranges, chunk by chunk; a row of PART has fewer values than one of the dataset.
+static enum status check_chunk(const struct subject *subject, struct part *part,
+                               double *block, const struct symbols *symbols,
+                               struct reason *reason)
+{
+    struct subject within = *subject;
+    within.row_values = 1;
+    for (int axis = 0; axis < subject->rank; axis++) {
+        const hsize_t left = subject->extent[axis] - part->start[axis];
+        if (left < part->count[axis]) part->count[axis] = left;
+        if (axis > 0) within.row_values *= part->count[axis];
+    }
+    if (!read_part(subject, part, block))
+        return cannot_be_read(subject, part->start[0], reason);
+    return check_range(&within, block, part->start[0] * within.row_values,
+                       part->count[0] * within.row_values, symbols, reason);
+}
+
+static enum status check_chunks(const struct subject *subject,
+                                const hsize_t chunk[MOST_RANK],
+                                const struct symbols *symbols, struct reason *reason)
+{
+    const hsize_t deep = subject->rank > 2 ? subject->extent[2] : 1;
+    double *block = NEW_ARRAY(double, chunk[0] * chunk[1] * deep);
+    enum status status = STATUS_OK;
+    for (hsize_t row = 0; row < subject->extent[0] && !status; row += chunk[0])
+        for (hsize_t k = 0; k < subject->extent[1] && !status; k += chunk[1]) {
+            struct part part = {{row, k, 0}, {chunk[0], chunk[1], deep}};
+            status = check_chunk(subject, &part, block, symbols, reason);
+        }
+    free(block);
+    return status;
+}
+
 // A block is whole rows and some 256 kB: small enough for the cache.
 static enum status check_values(const struct subject *subject, struct symbols *symbols,
                                 struct reason *reason)
 {
     const hsize_t rows = subject->extent[0];
+    hsize_t chunk[MOST_RANK];
     if (!rows || !subject->row_values) return STATUS_OK;
+    if (has_chunks(subject, chunk))
+        return check_chunks(subject, chunk, symbols, reason);
     const hsize_t block_rows =
         subject->row_values < BLOCK_VALUES ? BLOCK_VALUES / subject->row_values : 1;
     double *block = NEW_ARRAY(double, block_rows * subject->row_values);
@@ -316,8 +389,7 @@ static enum status check_values(const struct subject *subject, struct symbols *s
         const hsize_t taken = rows - row < block_rows ? rows - row : block_rows;
         const hsize_t count = taken * subject->row_values;
         if (!read_block(subject, row, taken, block)) {
-            status = refuse(reason, STATUS_BAD_DATA, "%s: row %llu: cannot be read",
-                            subject->name, (unsigned long long)row);
+            status = cannot_be_read(subject, row, reason);
             break;
         }
         status = check_range(subject, block, row * subject->row_values, count, symbols,

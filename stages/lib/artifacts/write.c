@@ -9,8 +9,10 @@
 // that, nothing is left, and what stood at the path still stands there.
 //
 //     /                   attributes, text: schema, program, parameters, inputs, model
-//     /GROUP/NAME         dataset; type and shape by the schema, without compression;
-//                         attributes, text: units, long_name
+//     /GROUP/NAME         dataset; type and shape by the schema, deflated in chunks
+//     where
+//                         the schema says "packed" and it is large; attributes, text:
+//                         units, long_name
 //     /summary, /liquid   groups with one attribute a number
 //     /VTKHDF             attributes Type, Version; datasets NumberOfPoints (1),
 //                         NumberOfCells (1), NumberOfConnectivityIds (1), Points
@@ -109,16 +111,38 @@ static void make_groups(hid_t file, const char *name)
     }
 }
 
+// Tables over time of which most values stay from row to row are written in chunks of
+// PACKED_ROWS rows and PACKED_COLUMNS columns, each deflated by itself: a row of a
+// chunk is near enough to the next for deflate, which looks back 32 kB, to find it
+// again.
+enum { PACKED_ROWS = 32, PACKED_COLUMNS = 512, LEAST_PACKED = 1 << 20 };
+
+static void pack_rows(hid_t creation, hid_t memory_type, int rank,
+                      const hsize_t *extent)
+{
+    static const unsigned fastest = 1;
+    hsize_t chunk[8], bytes = H5Tget_size(memory_type);
+    for (int axis = 0; axis < rank; axis++) {
+        const hsize_t most = axis == 0 ? PACKED_ROWS : PACKED_COLUMNS;
+        bytes *= extent[axis];
+        chunk[axis] = extent[axis] < most ? extent[axis] : most;
+    }
+    if (bytes < LEAST_PACKED) return;
+    H5Pset_chunk(creation, rank, chunk);
+    H5Pset_deflate(creation, fastest);
+}
+
 // The open dataset, for the caller to close once it has its attributes. A full disk may
 // show here, hence `wrote`.
 static hid_t put_array(const struct artifact *artifact, const char *name,
                        hid_t file_type, hid_t memory_type, int rank,
-                       const hsize_t *extent, const void *data)
+                       const hsize_t *extent, bool packed, const void *data)
 {
     const hid_t file = artifact->file;
     make_groups(file, name);
     const hid_t space = H5Screate_simple(rank, extent, NULL);
     const hid_t creation = untimed(H5P_DATASET_CREATE);
+    if (packed) pack_rows(creation, memory_type, rank, extent);
     const hid_t dataset = done(
         H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
         name);
@@ -146,7 +170,8 @@ void artifact_put_table(struct artifact *artifact, const char *name, const void 
     }
     const hid_t dataset =
         put_array(artifact, name, entry_file_type(entry), entry_memory_type(entry),
-                  (int)json_array_size(shape), extent, data);
+                  (int)json_array_size(shape), extent,
+                  json_is_true(json_object_get(entry, "packed")), data);
     put_text_attribute(dataset, "units",
                        json_string_value(json_object_get(entry, "units")));
     put_text_attribute(dataset, "long_name",
@@ -262,14 +287,14 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
 static void put_count(const struct artifact *artifact, const char *name, int64_t count)
 {
     H5Dclose(put_array(artifact, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1,
-                       &(hsize_t){1}, &count));
+                       &(hsize_t){1}, false, &count));
 }
 
 static void put_indices(const struct artifact *artifact, const char *name,
                         const int32_t *index, int count)
 {
     H5Dclose(put_array(artifact, name, H5T_STD_I32LE, H5T_NATIVE_INT32, 1,
-                       &(hsize_t){(hsize_t)count}, index));
+                       &(hsize_t){(hsize_t)count}, false, index));
 }
 
 // A byte that all have in common, and which takes no room.
