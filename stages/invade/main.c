@@ -3,9 +3,10 @@
 //
 // In this order: the walls of inlet and outlet are checked before anything is read;
 // radii are drawn, if asked for; throats without clearance and those imposed empty are
-// shut; entry pressures, invasion (network/invasion.h), its outcome, transport; then
-// the artifact. Of the summary:
-//     trapped_saturation  = residual saturation (volume of trapped clusters / of all),
+// shut; entry pressures, invasion (network/invasion.h), its outcome, rings, transport;
+// then the artifact. Of the summary:
+//     trapped_saturation  = residual saturation without rings
+//                           (volume of trapped clusters / of all),
 //     breakthrough_share  = throats (or nodes) with an entry pressure up to the highest
 //                           before breakthrough, over all that take part.
 //
@@ -18,6 +19,7 @@
 //     /throats   (n_throat) event, cluster;   /nodes (n_node) event
 //     /clusters  (n_cluster) throats, volume m3, trapped: the liquid that stays
 //     /curve     (n_curve) pressure, saturation: pressures higher than all before
+//     /rings     (n_ring) face, separation m, volume m3 in the end, if asked for
 //     /transport (n) saturation and four relative properties, if asked for
 //
 // Traps: `rule` says what gas must enter, `liquid_in` what loses liquid when it does;
@@ -30,16 +32,20 @@
 #include "network/drawn_radii.h"
 #include "outcome.h"
 #include "parameters/conditions.h"
+#include "rings_left.h"
 #include "transport.h"
 
+#include <math.h>
+#include <omp.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 struct invade_parameters {
     struct conditions given; // what `entry` gets its liquid from
     struct invasion_conditions invasion;
     struct entry_conditions entry;
     struct drawn_radii radii;
-    int rule, liquid_in, until;
+    int rule, liquid_in, until, rings;
     bool transport;
     unsigned imposed_empty;
     int shut; // throats without clearance
@@ -70,6 +76,12 @@ static const struct parameter table[] = {
      .text = "walls through which gas comes in"},
     {"outlet", PARAMETER_CHOICES, "1", "[\"-z\"]", AT(invasion.outlet),
      .choices = WALLS, .text = "walls through which liquid leaves"},
+    {"rings", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
+     .choices = "none|isolated|joined",
+     .text = "liquid that stays around contacts where gas has come: none; rings that "
+             "keep what they held when gas cut them off; or rings that films without "
+             "resistance join to the rest, so that they drain as the pressure rises "
+             "(trapping=false)"},
     {"transport", PARAMETER_BOOLEAN, "1", "false", AT(transport),
      .text = "compute how well gas and liquid flow, and diffuse, from inlet to outlet "
              "at saturations of 1, 0.9, 0.8, ... (relative permeability, effective "
@@ -122,17 +134,21 @@ static void put_summary(struct artifact *artifact, const struct network *network
                         const struct entry *entry)
 {
     const int n = invasion->breakthrough;
-    double trapped = 0, left = 0;
+    double trapped = 0, left = 0, in_rings = 0;
     for (int c = 0; c < outcome->n_cluster; c++) {
         left += outcome->cluster_volume[c];
         if (outcome->cluster_trapped[c]) trapped += outcome->cluster_volume[c];
     }
     const double saturation = outcome->n ? outcome->saturation[outcome->n - 1] : 1;
+    if (outcome->n && outcome->ring_saturation)
+        in_rings = outcome->ring_saturation[outcome->n - 1];
     artifact_put_number(artifact, "/summary/inlet", conditions->inlet);
     artifact_put_number(artifact, "/summary/outlet", conditions->outlet);
     artifact_put_number(artifact, "/summary/residual_saturation", saturation);
     artifact_put_number(artifact, "/summary/trapped_saturation",
-                        left > 0 ? saturation * (trapped / left) : 0);
+                        left > 0 ? (saturation - in_rings) * (trapped / left) : 0);
+    if (outcome->ring_saturation)
+        artifact_put_number(artifact, "/summary/ring_saturation", in_rings);
     if (n < 0) return;
     artifact_put_number(artifact, "/summary/breakthrough_event", n);
     artifact_put_number(artifact, "/summary/breakthrough_saturation",
@@ -173,6 +189,34 @@ static void put_outcome(struct artifact *artifact, const struct network *network
                                            "/throats/event", "/throats/cluster", NULL});
 }
 
+// The rings that hold liquid in the end.
+static void put_rings(struct artifact *artifact, const struct network *network,
+                      const struct outcome *outcome, const struct rings_left *left)
+{
+    double *whole = NEW_ARRAY(double, network->n_face);
+    for (int k = 0; k < left->rings.n_part; k++)
+        whole[left->rings.parts.face[k]] += left->part[k];
+    int32_t *face = NEW_ARRAY(int32_t, network->n_face);
+    double *separation = NEW_ARRAY(double, network->n_face);
+    int n = 0;
+    for (int f = 0; f < network->n_face; f++) {
+        if (!(whole[f] > 0)) continue;
+        face[n] = f;
+        separation[n] = left->rings.separation[f];
+        whole[n++] = whole[f];
+    }
+    artifact_put(artifact, "/rings/face", face, n);
+    artifact_put(artifact, "/rings/separation", separation, n);
+    artifact_put(artifact, "/rings/volume", whole, n);
+    artifact_put(artifact, "/events/ring_saturation", outcome->ring_saturation,
+                 outcome->n);
+    artifact_put(artifact, "/curve/ring_saturation", outcome->curve_rings,
+                 outcome->n_curve);
+    free(whole);
+    free(face);
+    free(separation);
+}
+
 // Relative to the network full of that phase; numbers of a material only where there
 // are any (transport.c).
 static void put_transport(struct artifact *artifact, const struct transport *transport)
@@ -196,11 +240,27 @@ static void put_transport(struct artifact *artifact, const struct transport *tra
                         transport->material[DIFFUSIVITY]);
 }
 
-static const char *describe(const struct invade_parameters *parameters, char *text,
-                            size_t size)
+static const char *describe_rings(const struct invade_parameters *parameters,
+                                  const struct rings_left *left, char *text,
+                                  size_t size)
+{
+    *text = 0;
+    if (parameters->rings != RINGS_NONE)
+        snprintf(text, size,
+                 "rings stay around contacts and in gaps, exact bridges %s; throats "
+                 "that hold less in them than these ask for: %d\n",
+                 parameters->rings == RINGS_ISOLATED
+                     ? "at the suction that cut them off"
+                     : "at the highest pressure so far, joined by films",
+                 left->limited);
+    return text;
+}
+
+static const char *describe(const struct invade_parameters *parameters,
+                            const struct rings_left *left, char *text, size_t size)
 {
     const unsigned shown = 1u << FLUID_SURFACE_TENSION | 1u << FLUID_DENSITY;
-    char gravity[60], fluid[300], radii[RADII_TEXT];
+    char gravity[60], fluid[300], radii[RADII_TEXT], rings[200];
     snprintf(gravity, sizeof gravity, "gravity: %.17g m/s2\n",
              parameters->entry.gravity);
     snprintf(
@@ -208,22 +268,24 @@ static const char *describe(const struct invade_parameters *parameters, char *te
         "invasion percolation (Wilkinson & Willemsen 1983): gas enters the %s it "
         "touches that takes the least pressure, of equals the shorter, then the "
         "smaller, then the higher\n"
-        "liquid is held by %s\n"
+        "liquid is held by %s\n%s"
         "%s\n%s"
         "%s, contact angle %.6g degrees\n"
         "%s"
         "throats without clearance, shut to gas and liquid: %d\n"
-        "left out: viscosity, evaporation, compressibility, films, snap-off%s",
+        "left out: viscosity, evaporation, compressibility, %ssnap-off%s",
         parameters->rule == INVADE_THROATS ? "throat" : "node",
         parameters->liquid_in == HELD_BY_PORES ? "pores, halves of throats at nodes"
                                                : "throats",
+        describe_rings(parameters, left, rings, sizeof rings),
         parameters->invasion.trapping
             ? "trapping: liquid leaves only through the outlet (Masson 2016)"
             : "no trapping: liquid leaves from anywhere",
         parameters->entry.gravity > 0 ? gravity : "",
         conditions_describe(&parameters->given, shown, fluid, sizeof fluid),
         parameters->given.contact_angle, describe_cut_radii(&parameters->radii, radii),
-        parameters->shut, parameters->entry.gravity > 0 ? "" : ", gravity");
+        parameters->shut, parameters->rings == RINGS_JOINED ? "" : "films, ",
+        parameters->entry.gravity > 0 ? "" : ", gravity");
     return text;
 }
 
@@ -244,6 +306,21 @@ static void complete_entry(struct invade_parameters *parameters)
     entry->liquid_density = given->property[FLUID_DENSITY];
 }
 
+// Before anything is read. Films would let trapped liquid out.
+static void check_rings(const struct invade_parameters *parameters)
+{
+    if (parameters->rings != RINGS_JOINED) return;
+    if (parameters->invasion.trapping)
+        die(STATUS_BAD_DATA,
+            "invade.trapping: must be false with rings=joined: liquid that films join "
+            "is not trapped");
+    if (parameters->entry.gravity > 0)
+        die(STATUS_BAD_DATA,
+            "invade.gravity: must be 0 with rings=joined, is %g m/s2; rings=isolated "
+            "goes with gravity",
+            parameters->entry.gravity);
+}
+
 // Before anything is read. Trapping without an outlet would keep all liquid in.
 static void check_walls(const struct invasion_conditions *conditions, bool transport)
 {
@@ -257,14 +334,34 @@ static void check_walls(const struct invasion_conditions *conditions, bool trans
             "invade.outlet: must have no wall in common with the inlet");
 }
 
+static enum status leave_rings(const struct network *network,
+                               const struct invade_parameters *parameters,
+                               struct rings_left *left, struct outcome *outcome,
+                               struct reason *reason)
+{
+    const struct entry_conditions *entry = &parameters->entry;
+    const struct ring_liquid liquid = {.surface_tension = entry->surface_tension,
+                                       .contact_angle =
+                                           entry->contact_angle * (M_PI / 180)};
+    const double weight =
+        entry->gravity > 0 ? entry->liquid_density * entry->gravity : 0;
+    const enum status status =
+        rings_left_init(network, outcome, (enum ring_supply)parameters->rings, &liquid,
+                        weight, left, reason);
+    if (!status) outcome_add_rings(outcome, left->volume);
+    return status;
+}
+
 int main(int argc, char **argv)
 {
     struct invade_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct invasion_conditions *conditions = &parameters.invasion;
+    omp_set_num_threads(invocation.threads);
     conditions->rule = (enum invasion_rule)parameters.rule;
     conditions->until_breakthrough = parameters.until == UNTIL_BREAKTHROUGH;
     check_walls(conditions, parameters.transport);
+    check_rings(&parameters);
     complete_entry(&parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
@@ -285,24 +382,29 @@ int main(int argc, char **argv)
     struct outcome outcome =
         outcome_init(&network, conditions, &invasion, entry.pressure,
                      (enum held_by)parameters.liquid_in);
+    struct rings_left left = {0};
+    if (parameters.rings != RINGS_NONE)
+        status = leave_rings(&network, &parameters, &left, &outcome, &reason);
     struct transport transport = {0};
-    if (parameters.transport)
+    if (!status && parameters.transport)
         status = transport_find(&network, conditions, &outcome, &transport, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
 
-    char model[1600];
+    char model[1800];
     struct artifact *artifact = artifact_create("invasion", invocation.output);
     artifact_put_network(artifact, &network);
     put_outcome(artifact, &network, &invasion, &outcome);
     put_summary(artifact, &network, conditions, &invasion, &outcome, &entry);
     artifact_put_number(artifact, "/summary/shut_throats", parameters.shut);
+    if (parameters.rings != RINGS_NONE) put_rings(artifact, &network, &outcome, &left);
     if (parameters.transport) put_transport(artifact, &transport);
     artifact_finish(artifact, &invocation, one_input(input),
-                    describe(&parameters, model, sizeof model));
+                    describe(&parameters, &left, model, sizeof model));
     if (!invocation.quiet)
         conditions_note(&parameters.given, needed_properties(&parameters));
 
     transport_free(&transport);
+    rings_left_free(&left);
     outcome_free(&outcome);
     invasion_free(&invasion);
     entry_free(&entry);

@@ -54,10 +54,8 @@ static void number_events(const struct network *network,
 
 // --- saturation and pressure -------------------------------------------------------
 
-// When the parts of THROAT lose their liquid: all of it, or its halves at both nodes.
-// Returns how many parts there are.
-static int events_of_parts(const struct network *network, const struct outcome *outcome,
-                           int throat, int32_t event[2])
+int events_of_pieces(const struct network *network, const struct outcome *outcome,
+                     int throat, int32_t event[2])
 {
     const int32_t *ends = network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
@@ -74,9 +72,9 @@ static void find_saturations(const struct network *network, struct outcome *outc
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         int32_t event[2];
-        const int parts = events_of_parts(network, outcome, t, event);
-        const double volume = throat_volume(network, t) / parts;
-        for (int k = 0; k < parts; k++) {
+        const int pieces = events_of_pieces(network, outcome, t, event);
+        const double volume = throat_volume(network, t) / pieces;
+        for (int k = 0; k < pieces; k++) {
             compensated_add(&all, volume);
             const int emptied = event[k] == LIQUID ? outcome->n : event[k] - 1;
             if (emptied > last) last = emptied;
@@ -84,7 +82,7 @@ static void find_saturations(const struct network *network, struct outcome *outc
             if (event[k] == GAS_FROM_THE_START) compensated_add(&gone, volume);
         }
     }
-    const double total = compensated_value(all);
+    const double total = outcome->volume = compensated_value(all);
     for (int k = 0; k < outcome->n; k++) {
         compensated_add(&gone, lost[k]);
         outcome->saturation[k] =
@@ -95,12 +93,27 @@ static void find_saturations(const struct network *network, struct outcome *outc
 
 static void find_curve(struct outcome *outcome)
 {
+    outcome->n_curve = 0;
     for (int k = 0; k < outcome->n; k++) {
         int *n = &outcome->n_curve;
         if (*n == 0 || outcome->pressure[k] > outcome->curve_pressure[*n - 1])
             outcome->curve_pressure[(*n)++] = outcome->pressure[k];
         outcome->curve_saturation[*n - 1] = outcome->saturation[k];
+        if (outcome->ring_saturation)
+            outcome->curve_rings[*n - 1] = outcome->ring_saturation[k];
     }
+}
+
+void outcome_add_rings(struct outcome *outcome, const double *volume)
+{
+    outcome->ring_saturation = NEW_ARRAY(double, outcome->n);
+    outcome->curve_rings = NEW_ARRAY(double, outcome->n);
+    for (int k = 0; k < outcome->n; k++) {
+        outcome->ring_saturation[k] = volume[k] / outcome->volume;
+        outcome->saturation[k] =
+            fmin(1, outcome->saturation[k] + outcome->ring_saturation[k]);
+    }
+    find_curve(outcome);
 }
 
 // --- what stays --------------------------------------------------------------------
@@ -122,10 +135,10 @@ static void add_to_cluster(const struct network *network, struct outcome *outcom
     outcome->throat_cluster[throat] = cluster;
     outcome->cluster_throats[cluster]++;
     int32_t event[2];
-    const int parts = events_of_parts(network, outcome, throat, event);
-    for (int k = 0; k < parts; k++)
+    const int pieces = events_of_pieces(network, outcome, throat, event);
+    for (int k = 0; k < pieces; k++)
         if (event[k] == LIQUID)
-            outcome->cluster_volume[cluster] += throat_volume(network, throat) / parts;
+            outcome->cluster_volume[cluster] += throat_volume(network, throat) / pieces;
     outcome->cluster_trapped[cluster] = 1;
 }
 
@@ -201,6 +214,8 @@ void outcome_free(struct outcome *outcome)
     free(outcome->saturation);
     free(outcome->curve_pressure);
     free(outcome->curve_saturation);
+    free(outcome->ring_saturation);
+    free(outcome->curve_rings);
     free(outcome->throat_cluster);
     free(outcome->cluster_throats);
     free(outcome->cluster_volume);

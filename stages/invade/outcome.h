@@ -21,13 +21,16 @@ struct outcome {
     int32_t *node_event;   // (n_node)
 
     int n;
-    double *pressure;   // (n) Pa, at which gas enters
-    double *saturation; // (n) after the event, of the liquid volume at the start
+    double volume;           // m3 of liquid at the start
+    double *pressure;        // (n) Pa, at which gas enters
+    double *saturation;      // (n) after the event, of the liquid volume at the start
+    double *ring_saturation; // (n) the part of it in rings; NULL: not looked at
 
     // Pressures higher than all before, and the saturation just before the next of
     // them.
     int n_curve;
     double *curve_pressure, *curve_saturation; // (n_curve)
+    double *curve_rings; // (n_curve) the part of the saturation in rings, or NULL
 
     int32_t *throat_cluster; // (n_throat) -1: gas; clusters by their lowest throat
     int n_cluster;
@@ -42,6 +45,14 @@ struct outcome outcome_init(const struct network *network,
                             const struct invasion_conditions *conditions,
                             const struct invasion *invasion, const double *pressure,
                             enum held_by held_by);
+
+// When the pieces of THROAT lose their liquid: all of it, or its halves at both nodes.
+// Returns how many pieces there are.
+int events_of_pieces(const struct network *network, const struct outcome *outcome,
+                     int throat, int32_t event[2]);
+
+// Counts the VOLUME (n), m3, that stays in rings after each event.
+void outcome_add_rings(struct outcome *outcome, const double *volume);
 
 void outcome_free(struct outcome *outcome);
 

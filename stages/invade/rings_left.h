@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The liquid that stays as rings around contacts where gas has come.
+#ifndef CRAQUELURE_RINGS_LEFT_H
+#define CRAQUELURE_RINGS_LEFT_H
+
+#include "network/contact_rings.h"
+#include "outcome.h"
+
+enum ring_supply {
+    RINGS_NONE,
+    RINGS_ISOLATED, // each part keeps what it held when gas cut it off
+    RINGS_JOINED    // films without resistance join all to liquid at the gas' highest
+                    // pressure so far: they drain as it rises
+};
+
+// It owns its arrays.
+struct rings_left {
+    double *volume; // (outcome->n) m3 in all rings after each event
+    double *part;   // (rings.n_part) m3 in the end
+    struct contact_rings rings;
+    int limited; // throats that hold less in rings than these ask for
+};
+
+// Where gas was from the start rings are joined ones only. WEIGHT: of the liquid, N/m3,
+// by which suction grows with height; 0 with RINGS_JOINED. The caller frees LEFT with
+// rings_left_free, also after a failure. Statuses as contact_rings_init and
+// ring_volumes.
+enum status rings_left_init(const struct network *network,
+                            const struct outcome *outcome, enum ring_supply supply,
+                            const struct ring_liquid *liquid, double weight,
+                            struct rings_left *left, struct reason *reason);
+void rings_left_free(struct rings_left *left);
+
+#endif

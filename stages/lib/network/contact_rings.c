@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A ring stands around the middle m of the gap between two grains that share a face.
+// The throat from node a to node b, a side of this face, faces the part
+//     share = angle(a - m, b - m) / sum of these angles around the face,
+// and leaves, when gas enters it at a suction p,
+//     volume = share V(p, separation),   V of the exact bridge at that suction,
+// reduced together with its other parts if they exceed MOST_IN_RINGS of the throat.
+//
+// At contact V ~ p^-2, and a ring is there at any suction and any contact angle below
+// 90 degrees; across a gap there is none above a suction that falls with the contact
+// angle. Two grains hold no ring across a gap wider than 2 tension cos(angle) / p: no
+// liquid has that suction between plates so far apart.
+#include "network/contact_rings.h"
+
+#include "basics/memory.h"
+#include "bridges/bridges.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// ---- where rings may stand ----------------------------------------------------------
+
+static bool holds_ring(const struct network *network, int face)
+{
+    const int32_t *grain = network->face_particles[face];
+    return grain[1] >= 0 && !is_auxiliary(&network->packing, grain[0]) &&
+           !is_auxiliary(&network->packing, grain[1]);
+}
+
+// Separation at FACE; MIDDLE of the gap, or of what two grains share.
+static double gap_at(const struct network *network, int face, struct vector *middle)
+{
+    const int32_t *grain = network->face_particles[face];
+    const double *radius = network->packing.radius;
+    const struct vector centre = network->packing.position[grain[0]];
+    const struct vector apart = subtract(second_grain(network, face), centre);
+    const double along = norm(apart);
+    const double separation = along - radius[grain[0]] - radius[grain[1]];
+    *middle = add(centre, scale((radius[grain[0]] + separation / 2) / along, apart));
+    return separation;
+}
+
+static double angle_between(struct vector a, struct vector b)
+{
+    return atan2(norm(cross(a, b)), dot(a, b));
+}
+
+// Angles under which throats are seen from their rings; SUM (n_face) of each ring.
+static void find_angles(const struct network *network, struct contact_rings *rings,
+                        const struct vector *middle, double *sum)
+{
+    const struct throat_sides *parts = &rings->parts;
+    for (int t = 0; t < network->n_throat; t++) {
+        if (network->throat_kind[t] != THROAT_NETWORK) continue;
+        for (int64_t k = parts->offset[t]; k < parts->offset[t + 1]; k++) {
+            const int face = parts->face[k];
+            if (!isfinite(rings->separation[face])) continue;
+            const struct throat_side side = throat_side(network, parts, t, k);
+            rings->share[k] = angle_between(subtract(side.first, middle[face]),
+                                            subtract(side.second, middle[face]));
+            sum[face] += rings->share[k];
+        }
+    }
+}
+
+enum status contact_rings_init(const struct network *network,
+                               struct contact_rings *rings, struct reason *reason)
+{
+    *rings = (struct contact_rings){0};
+    const enum status status = throat_sides_init(network, &rings->parts, reason);
+    if (status) return status;
+    rings->n_part = (int)rings->parts.offset[network->n_throat];
+    rings->share = NEW_ARRAY(double, rings->n_part);
+    rings->separation = NEW_ARRAY(double, network->n_face);
+    struct vector *middle = NEW_ARRAY(struct vector, network->n_face);
+    double *sum = NEW_ARRAY(double, network->n_face);
+    int n = 0;
+    for (int face = 0; face < network->n_face; face++) {
+        rings->separation[face] = INFINITY;
+        if (!holds_ring(network, face)) continue;
+        rings->separation[face] = gap_at(network, face, &middle[face]);
+        n++;
+    }
+    find_angles(network, rings, middle, sum);
+    for (int k = 0; k < rings->n_part; k++)
+        if (sum[rings->parts.face[k]] > 0) rings->share[k] /= sum[rings->parts.face[k]];
+    free(middle);
+    free(sum);
+    if (n > 0) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "/faces/particles: rings need two grains that share a face "
+                  "(tessellate in three dimensions makes them)");
+}
+
+void contact_rings_free(struct contact_rings *rings)
+{
+    throat_sides_free(&rings->parts);
+    free(rings->share);
+    free(rings->separation);
+    *rings = (struct contact_rings){0};
+}
+
+// ---- what they hold -----------------------------------------------------------------
+
+// Volume (m3) of the ring at FACE and that suction; 0: there is none.
+static enum status ring_volume(const struct network *network,
+                               const struct contact_rings *rings, int face,
+                               const struct ring_liquid *liquid, double suction,
+                               double *volume)
+{
+    const double angle = liquid->contact_angle, separation = rings->separation[face];
+    const int32_t *grain = network->face_particles[face];
+    *volume = 0;
+    if (!(separation * suction < 2 * liquid->surface_tension * cos(angle)))
+        return STATUS_OK;
+    const struct bridge bridge = {.radius = {network->packing.radius[grain[0]],
+                                             network->packing.radius[grain[1]]},
+                                  .contact_angle = {angle, angle},
+                                  .surface_tension = liquid->surface_tension};
+    struct bridge_state state;
+    struct reason unused;
+    const enum status status =
+        bridge_at_suction(&bridge, separation, suction, &state, volume, &unused);
+    if (status) *volume = 0;
+    return status == STATUS_NO ? STATUS_OK : status;
+}
+
+bool limit_parts(const struct network *network, const struct contact_rings *rings,
+                 int throat, double *volume)
+{
+    const int64_t begin = rings->parts.offset[throat],
+                  end = rings->parts.offset[throat + 1];
+    const double most = MOST_IN_RINGS * throat_volume(network, throat);
+    double sum = 0;
+    for (int64_t k = begin; k < end; k++)
+        sum += volume[k];
+    if (!(sum > most)) return false;
+    for (int64_t k = begin; k < end; k++)
+        volume[k] *= most / sum;
+    return true;
+}
+
+// The parts of THROAT, not yet limited.
+static enum status find_parts(const struct network *network,
+                              const struct contact_rings *rings,
+                              const struct ring_liquid *liquid, int throat,
+                              double suction, double *volume)
+{
+    const struct throat_sides *parts = &rings->parts;
+    for (int64_t k = parts->offset[throat]; k < parts->offset[throat + 1]; k++) {
+        double whole = 0;
+        if (suction > 0 && rings->share[k] > 0) {
+            const enum status status =
+                ring_volume(network, rings, parts->face[k], liquid, suction, &whole);
+            if (status) return status;
+        }
+        volume[k] = rings->share[k] * whole;
+    }
+    return STATUS_OK;
+}
+
+enum status ring_volumes(const struct network *network,
+                         const struct contact_rings *rings,
+                         const struct ring_liquid *liquid, const double *suction,
+                         double *volume, int *limited, struct reason *reason)
+{
+    int failed = network->n_throat, count = 0;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)                 \
+    reduction(+ : count)
+    for (int t = 0; t < network->n_throat; t++) {
+        if (find_parts(network, rings, liquid, t, suction[t], volume))
+            failed = t < failed ? t : failed;
+        else
+            count += limit_parts(network, rings, t, volume);
+    }
+    *limited = count;
+    if (failed == network->n_throat) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "no ring was found beside throat %d at a suction of %g Pa", failed,
+                  suction[failed]);
+}
+
+enum status whole_rings(const struct network *network,
+                        const struct contact_rings *rings,
+                        const struct ring_liquid *liquid, double suction,
+                        const bool *wanted, double *whole, struct reason *reason)
+{
+    int failed = network->n_face;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)
+    for (int f = 0; f < network->n_face; f++) {
+        whole[f] = 0;
+        if (wanted[f] && ring_volume(network, rings, f, liquid, suction, &whole[f]))
+            failed = f < failed ? f : failed;
+    }
+    if (failed == network->n_face) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "no ring was found at face %d at a suction of %g Pa", failed,
+                  suction);
+}
