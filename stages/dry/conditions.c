@@ -55,16 +55,21 @@ static enum status check_menisci(const struct drying_conditions *conditions,
 }
 
 // Surface tension and angle count only where suctions are computed: in viscous liquid,
-// under gravity, or with the Kelvin effect. In the two limits only the order of the
-// radii counts, which has no tension in it.
+// under gravity, with the Kelvin effect, or with rings. In the two limits only the
+// order of the radii counts, which has no tension in it.
 static enum status check_liquid(const struct drying_conditions *conditions,
                                 struct reason *reason)
 {
     if ((unsigned)conditions->liquid > LIQUID_VISCOUS)
         return refuse(reason, STATUS_BAD_DATA, "liquid: no such limit, %d",
                       (int)conditions->liquid);
+    if (conditions->rings &&
+        (conditions->liquid == LIQUID_VISCOUS || conditions->kelvin))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "rings: must be none where liquid is viscous or menisci are "
+                      "curved (kelvin)");
     if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0 &&
-        !conditions->kelvin)
+        !conditions->kelvin && !conditions->rings)
         return STATUS_OK;
     const enum status status = check_menisci(conditions, reason);
     if (status || conditions->liquid != LIQUID_VISCOUS) return status;

@@ -36,6 +36,7 @@ struct drying_conditions {
     double gravity;         // towards -z, m/s2; 0: none
     bool knudsen;           // molecules meet the walls of narrow throats
     bool kelvin;            // curved menisci have less vapour
+    bool rings;             // throats leave liquid at contacts, which dries by itself
     int n_snapshot;
     const double *snapshot; // (n_snapshot) saturations, each below the one before:
                             // where the pressures of viscous liquid are kept

@@ -86,6 +86,10 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
             conditions->vapour_tolerance);
         append(text, size, line);
     }
+    if (conditions->rings)
+        append(text, size,
+               "rings stay at contacts as throats empty, exact bridges, and dry when "
+               "their node has no other liquid\n");
     append(text, size, "left out: ");
     if (!gravity) append(text, size, "gravity, ");
     if (!conditions->knudsen) append(text, size, "Knudsen effect, ");

@@ -23,7 +23,7 @@ struct dry_parameters {
     double snapshot_interval;
     double *even_snapshots; // by snapshot_interval, in place of the list; NULL: none
     struct air_flow air;
-    int liquid, transfer_law, exchange, feet;
+    int liquid, transfer_law, exchange, feet, rings;
     int shut;     // throats without clearance
     int enclosed; // throats cut off from all others by these and those imposed empty
     int64_t layers;

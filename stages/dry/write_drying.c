@@ -11,6 +11,7 @@
 //                  slice_saturation; (9, PROFILE_CLASSES) clusters; depth
 //     /snapshots   (n_snapshot) time, saturation; (n_snapshot, n_throat)
 //                  throat_saturation; (n_snapshot, n_node) liquid_pressure, Pa
+//     /rings, /ring_changes (write_rings.c)
 //     /boundary_layer (write_layer.c), /liquid, /gas, /summary
 //
 // Trap: profiles and snapshots belong to the first recorded step with at most their
@@ -23,6 +24,7 @@
 #include "describe.h"
 #include "dry/run/profiles.h"
 #include "write_layer.h"
+#include "write_rings.h"
 
 #include <limits.h>
 #include <math.h>
@@ -210,6 +212,7 @@ void write_drying(const struct network *network, const struct drying_history *hi
     artifact_put_number(artifact, "/summary/shut_throats", parameters->shut);
     artifact_put_number(artifact, "/summary/enclosed_throats", parameters->enclosed);
     put_boundary_layer(artifact, network, &parameters->conditions, history);
+    if (history->rings) put_rings(artifact, history);
     put_profiles(artifact, network, history, conditions);
     if (conditions->n_snapshot > 0)
         put_snapshots(artifact, network, history, conditions);

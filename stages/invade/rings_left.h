@@ -6,13 +6,6 @@
 #include "network/contact_rings.h"
 #include "outcome.h"
 
-enum ring_supply {
-    RINGS_NONE,
-    RINGS_ISOLATED, // each part keeps what it held when gas cut it off
-    RINGS_JOINED    // films without resistance join all to liquid at the gas' highest
-                    // pressure so far: they drain as it rises
-};
-
 // It owns its arrays.
 struct rings_left {
     double *volume; // (outcome->n) m3 in all rings after each event

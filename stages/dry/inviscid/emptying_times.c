@@ -22,6 +22,15 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
+// Scaled, of a throat or of rings.
+static double volume_of(const struct emptying_times *times, int place)
+{
+    const struct occupancy *occupancy = times->occupancy;
+    return is_rings(times, place)
+               ? occupancy->rings->at_node[place - occupancy->network->n_throat]
+               : occupancy->volume[place];
+}
+
 // --- who loses ---------------------------------------------------------------------
 
 // Starts timer K at the throat from which its reservoir loses: the throat itself, or
@@ -30,17 +39,18 @@ static void start_timer(struct emptying_times *times, int k)
 {
     const int owner = times->owner[k];
     const int throat =
-        times->by_throat ? owner
-                         : clusters_invasion_throat(&times->occupancy->clusters, owner);
+        times->by_throat || is_rings(times, owner)
+            ? owner
+            : clusters_invasion_throat(&times->occupancy->clusters, owner);
     const int place = first_not_below(times->losing, times->n_losing, throat);
     memmove(times->losing + place + 1, times->losing + place,
             (size_t)(times->n_losing++ - place) * sizeof *times->losing);
     times->losing[place] = throat;
     times->throat[k] = throat;
-    times->left[k] = times->saturation[throat] * times->occupancy->volume[throat];
+    times->left[k] = times->saturation[throat] * volume_of(times, throat);
     times->left_lost[k] = 0;
     times->since[k] = times->now;
-    times->nothing[k] = TIE * times->occupancy->volume[throat];
+    times->nothing[k] = TIE * volume_of(times, throat);
 }
 
 // Brings LEFT up to now. Two-sum keeps what is rounded off in LEFT_LOST.
@@ -63,7 +73,7 @@ static void stop_timer(struct emptying_times *times, int k)
             (size_t)(--times->n_losing - place) * sizeof *times->losing);
     advance_timer(times, k);
     times->saturation[throat] =
-        (times->left[k] + times->left_lost[k]) / times->occupancy->volume[throat];
+        (times->left[k] + times->left_lost[k]) / volume_of(times, throat);
     times->throat[k] = -1;
 }
 
@@ -139,10 +149,12 @@ static void set_rates(struct emptying_times *times, bool all_changed)
 
 struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_throat)
 {
-    const int n = occupancy->network->n_throat;
+    const int n_throat = occupancy->network->n_throat;
+    const int n = n_throat + (occupancy->rings ? occupancy->network->n_node : 0);
     struct emptying_times times = {
         .occupancy = occupancy,
         .by_throat = by_throat,
+        .n_place = n,
         .share = NEW_ARRAY(struct evaporation_share, 2 * (size_t)n),
         .share_incidence = NEW_ARRAY(int, 2 * (size_t)n),
         .share_place = NEW_ARRAY(int, 2 * (size_t)n),
@@ -166,7 +178,7 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
         .dirty = NEW_ARRAY(int, n),
         .is_dirty = NEW_ARRAY(bool, n)};
     for (int t = 0; t < n; t++) {
-        times.saturation[t] = occupancy_saturation(occupancy, t);
+        times.saturation[t] = t < n_throat ? occupancy_saturation(occupancy, t) : 1;
         times.timer[t] = -1;
     }
     for (size_t k = 0; k < 2 * (size_t)n; k++)
@@ -213,8 +225,7 @@ double emptying_times_saturation(const struct emptying_times *times, int throat)
     const int k = times->timer[owner];
     if (k < 0 || times->throat[k] != throat) return times->saturation[throat];
     const double lost = times->rate[k] * (times->now - times->since[k]);
-    return (times->left[k] + (times->left_lost[k] - lost)) /
-           times->occupancy->volume[throat];
+    return (times->left[k] + (times->left_lost[k] - lost)) / volume_of(times, throat);
 }
 
 double emptying_times_imbalance(const struct emptying_times *times)
@@ -287,6 +298,15 @@ double emptying_times_advance(struct emptying_times *times)
     return span;
 }
 
+// The node dries.
+static void empty_rings(struct emptying_times *times, int place)
+{
+    const int node = place - times->occupancy->network->n_throat;
+    stop_timer(times, times->timer[place]);
+    occupancy_dry_rings(times->occupancy, node);
+    share_by_node(times, node);
+}
+
 // Returns whether a node dries.
 static bool empty_throat(struct emptying_times *times, int throat)
 {
@@ -299,15 +319,17 @@ static bool empty_throat(struct emptying_times *times, int throat)
     for (int l = 0; l < occupancy->clusters.n_moved; l++)
         share_by_ends(times, occupancy->clusters.moved[l]);
     const int32_t *node = occupancy->network->throat_nodes[throat];
-    return occupancy->liquid_beside[node[0]] == 0 ||
-           occupancy->liquid_beside[node[1]] == 0;
+    return occupancy->wet_place[node[0]] < 0 || occupancy->wet_place[node[1]] < 0;
 }
 
 void emptying_times_empty_ended(struct emptying_times *times)
 {
     bool dries = false;
-    for (int k = 0; k < times->n_ended; k++)
-        dries |= empty_throat(times, times->ended[k]);
+    for (int k = 0; k < times->n_ended; k++) {
+        const int place = times->ended[k];
+        if (is_rings(times, place)) empty_rings(times, place);
+        dries |= is_rings(times, place) || empty_throat(times, place);
+    }
     set_rates(times, dries);
 }
 
@@ -340,7 +362,7 @@ void emptying_times_state(struct emptying_times *times,
     for (int k = 0; stream->restoring && k < times->n; k++) {
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = k;
         const int throat = times->throat[k];
-        times->nothing[k] = throat < 0 ? 0 : TIE * times->occupancy->volume[throat];
+        times->nothing[k] = throat < 0 ? 0 : TIE * volume_of(times, throat);
         find_end(times, k);
     }
 }

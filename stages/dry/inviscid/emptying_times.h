@@ -6,6 +6,10 @@
 // from its widest meniscus throat [K 3.4.2, steps 2 to 4]; immobile, each throat loses
 // its own. A throat that loses has a timer: the moment at which it will have emptied
 // (discrete-event simulation). Liquid that no vapour leaves has none.
+//
+// Rings at a node are a reservoir of their own, which loses what the node evaporates
+// once no throat there holds liquid: while one does, its flatter meniscus keeps the
+// vapour from them. They are numbered behind the throats: n_throat + node.
 #ifndef CRAQUELURE_EMPTYING_TIMES_H
 #define CRAQUELURE_EMPTYING_TIMES_H
 
@@ -17,6 +21,7 @@ struct evaporation_share;
 struct emptying_times {
     struct occupancy *occupancy;
     bool by_throat; // a reservoir for each throat; else for each cluster
+    int n_place;    // throats; with rings n_throat + n_node
 
     int n_share;
     struct evaporation_share *share; // (n_share) of nodes that are linked to the air
@@ -24,10 +29,10 @@ struct emptying_times {
     int *share_place;     // (2 n_throat) in share, beside incidence.throat
 
     // One for each reservoir that loses.
-    int *timer;    // (n_throat) of the reservoir, by cluster or by throat; -1: none
+    int *timer;    // (n_place) of the reservoir, by cluster, throat or rings; -1: none
     int n;         // so far, the unused included
     int *owner;    // (n) reservoir, -1: unused
-    int *throat;   // (n) that loses, -1: not found yet
+    int *throat;   // (n) that loses, or rings; -1: not found yet
     int *shares;   // (n) how many
     bool *has_sum; // (n) whether SUM follows the shares
     struct compensated *sum; // (n) of the shares
@@ -39,18 +44,18 @@ struct emptying_times {
     double *nothing;         // (n) if no more is left, the throat has emptied
     double *end, *tie;  // (n) the moments at which it has lost all, or all but NOTHING
     double now;         // since all LEFT were last brought up to date
-    double *saturation; // (n_throat) of throats whose timer has stopped
+    double *saturation; // (n_place) of those whose timer has stopped
     int n_unused;
     int *unused; // (n_unused) timers
     int n_losing;
-    int *losing; // (n_losing) the throats, ascending
+    int *losing; // (n_losing) the throats and rings, ascending
 
     int n_dirty;
     int *dirty;     // (n_dirty) timers with other shares than before, or no throat
     bool *is_dirty; // (n)
 
     int n_ended, ended_capacity;
-    int *ended; // (n_ended) throats that empty now, ascending
+    int *ended; // (n_ended) throats and rings that empty now, ascending
 };
 
 // For OCCUPANCY as they are, with the liquid there is in each throat; they must live as
@@ -65,7 +70,7 @@ double emptying_times_advance(struct emptying_times *times);
 // Gas fills the ended throats. The timers run on with the rates that follow.
 void emptying_times_empty_ended(struct emptying_times *times);
 
-// Saturation of THROAT now, from 0 to 1.
+// Saturation of THROAT, or of rings, now, from 0 to 1.
 double emptying_times_saturation(const struct emptying_times *times, int throat);
 
 // What all throats lose less what goes into the air, relative to the latter: rounding.

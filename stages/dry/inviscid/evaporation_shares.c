@@ -69,11 +69,9 @@ static void remove_share(struct emptying_times *times, int place)
 }
 
 // Adds PART to the share that the reservoir has of NODE already, or makes a new share.
-static void add_share(struct emptying_times *times, int node, int incidence,
+static void add_share(struct emptying_times *times, int node, int incidence, int owner,
                       double part)
 {
-    const int owner =
-        reservoir_of(times, times->occupancy->incidence.throat[incidence]);
     const int timer = timer_of(times, owner);
     for (int k = times->occupancy->incidence.offset[node]; k < incidence; k++) {
         const int place = times->share_place[k];
@@ -103,8 +101,12 @@ void share_by_node(struct emptying_times *times, int node)
     for (int k = begin; k < end; k++) {
         const double section =
             liquid_section(occupancy, occupancy->incidence.throat[k]);
-        if (section > 0) add_share(times, node, k, section / sum);
+        const int throat = occupancy->incidence.throat[k];
+        if (section > 0)
+            add_share(times, node, k, reservoir_of(times, throat), section / sum);
     }
+    if (!(sum > 0) && occupancy->has_rings && occupancy->has_rings[node])
+        add_share(times, node, begin, occupancy->network->n_throat + node, 1);
     for (int k = begin; k < end; k++) {
         const int place = times->share_place[k];
         if (place < 0) continue;

@@ -15,10 +15,18 @@ struct evaporation_share {
     int node, timer;
 };
 
+static inline bool is_rings(const struct emptying_times *times, int place)
+{
+    return place >= times->occupancy->network->n_throat;
+}
+
 // The reservoir of THROAT: itself or its cluster; -1 if a cluster would hold no liquid.
+// Rings are their own.
 static inline int reservoir_of(const struct emptying_times *times, int throat)
 {
-    return times->by_throat ? throat : times->occupancy->clusters.of_throat[throat];
+    return times->by_throat || is_rings(times, throat)
+               ? throat
+               : times->occupancy->clusters.of_throat[throat];
 }
 
 // Shares out NODE, or both nodes of THROAT, again: other throats hold liquid there than

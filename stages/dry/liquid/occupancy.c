@@ -14,6 +14,24 @@
 
 #include <stdlib.h>
 
+static void leave_in_rings(struct occupancy *occupancy, int throat, double left)
+{
+    occupancy->volume[throat] -= left;
+    occupancy->liquid[throat].value = occupancy->volume[throat];
+}
+
+// Nodes that hold rings dry later than their throats.
+static void place_rings(struct occupancy *occupancy)
+{
+    const int n = occupancy->network->n_node;
+    if (!occupancy->rings) return;
+    occupancy->has_rings = NEW_ARRAY(bool, n);
+    for (int i = 0; i < n; i++) {
+        occupancy->has_rings[i] = occupancy->rings->at_node[i] > 0;
+        occupancy->n_liquid += occupancy->has_rings[i];
+    }
+}
+
 // Throats of other kinds have volume 0 and never liquid.
 static void fill_throats(struct occupancy *occupancy, double length)
 {
@@ -21,12 +39,14 @@ static void fill_throats(struct occupancy *occupancy, double length)
     occupancy->volume = NEW_ARRAY(double, network->n_throat);
     occupancy->liquid = NEW_ARRAY(struct compensated, network->n_throat);
     occupancy->liquid_beside = NEW_ARRAY(int, network->n_node);
+    const struct ring_stores *rings = occupancy->rings;
     struct compensated total = {0};
     for (int t = 0; t < network->n_throat; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
         occupancy->volume[t] = throat_volume(network, t) / (length * length * length);
         occupancy->liquid[t].value = occupancy->volume[t];
         compensated_add(&total, occupancy->volume[t]);
+        if (rings) leave_in_rings(occupancy, t, rings->of_throat[t]);
         occupancy->n_liquid++;
         for (int end = 0; end < 2; end++)
             occupancy->liquid_beside[network->throat_nodes[t][end]]++;
@@ -91,17 +111,26 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
                                     .incidence = network_incidence(network),
                                     .far_walls = opposite(open_walls) & ~open_walls,
                                     .layer = layer,
+                                    .rings = form->rings,
                                     .gas = NEW_ARRAY(bool, network->n_node),
                                     .wet = NEW_ARRAY(int, network->n_node),
                                     .wet_place = NEW_ARRAY(int, network->n_node)};
     for (int i = 0; i < network->n_node; i++)
         occupancy->wet_place[i] = -1;
     fill_throats(occupancy, form->length);
+    place_rings(occupancy);
     occupancy->vapour = vapour_init(network, form->length, form->knudsen_radius,
                                     &occupancy->layer, form->vapour_tolerance);
     occupancy->clusters = clusters_init(network, &occupancy->incidence,
                                         form->entry_priority, form->gas_parts);
     return expose_surface(occupancy, reason);
+}
+
+// Without liquid the vapour passes through the node.
+static void dry_node(struct occupancy *occupancy, int node)
+{
+    remove_wet(occupancy, node);
+    vapour_dry_node(&occupancy->vapour, node);
 }
 
 // The vapour's throat is opened before its nodes are dried, because elimination of a
@@ -119,13 +148,19 @@ void occupancy_empty_throat(struct occupancy *occupancy, int throat)
         occupancy->gas[node] = true;
         occupancy->breakthrough |=
             (occupancy->network->node_walls[node] & occupancy->far_walls) != 0;
-        if (--occupancy->liquid_beside[node] > 0) {
+        if (--occupancy->liquid_beside[node] > 0 ||
+            (occupancy->has_rings && occupancy->has_rings[node]))
             add_wet(occupancy, node);
-        } else {
-            remove_wet(occupancy, node);
-            vapour_dry_node(&occupancy->vapour, node);
-        }
+        else
+            dry_node(occupancy, node);
     }
+}
+
+void occupancy_dry_rings(struct occupancy *occupancy, int node)
+{
+    occupancy->n_liquid--;
+    occupancy->has_rings[node] = false;
+    dry_node(occupancy, node);
 }
 
 double occupancy_saturation(const struct occupancy *occupancy, int throat)
@@ -144,6 +179,7 @@ void occupancy_free(struct occupancy *occupancy)
     free(occupancy->liquid);
     free(occupancy->gas);
     free(occupancy->liquid_beside);
+    free(occupancy->has_rings);
     free(occupancy->wet);
     free(occupancy->wet_place);
     *occupancy = (struct occupancy){0};

@@ -9,6 +9,7 @@
 #include "clusters.h"
 #include "dry/gas/boundary_layer.h"
 #include "dry/gas/vapour.h"
+#include "ring_stores.h"
 
 // It owns its arrays and parts, not NETWORK. Volumes are scaled by the cube of the unit
 // of length. Throats of other kinds than THROAT_NETWORK have volume 0 and never liquid.
@@ -20,15 +21,18 @@ struct occupancy {
     struct vapour vapour;
     struct clusters clusters;
 
-    double *volume;             // (n_throat) scaled; 0 where no throat takes part
-    struct compensated *liquid; // (n_throat) of the volume
-    double capacity;            // volume of all
+    const struct ring_stores *rings; // NULL: throats leave nothing
+    double *volume;                  // (n_throat) scaled; 0 where no throat takes part;
+                                     // without what stays in rings
+    struct compensated *liquid;      // (n_throat) of the volume
+    double capacity;                 // volume of all, rings included
     double initial_liquid;
     struct compensated total_liquid;
-    int n_liquid; // throats not yet empty
+    int n_liquid; // throats not yet empty, and nodes whose rings are not yet dry
 
     bool *gas;          // (n_node)
     int *liquid_beside; // (n_node) throats with liquid at the node
+    bool *has_rings;    // (n_node) rings there hold liquid; NULL without rings
     int n_wet;
     int *wet;          // (n_wet) nodes with liquid on one side and gas on the other
     int *wet_place;    // (n_node) in wet, -1 where not wet
@@ -37,11 +41,12 @@ struct occupancy {
 
 // How to make one. It owns nothing.
 struct occupancy_form {
-    double length;                // m, the unit
-    bool gas_parts;               // as in struct clusters
-    const double *entry_priority; // (n_throat) as clusters_init takes it
-    double knudsen_radius;        // m, as vapour_init takes it
-    double vapour_tolerance;      // likewise
+    double length;                   // m, the unit
+    bool gas_parts;                  // as in struct clusters
+    const double *entry_priority;    // (n_throat) as clusters_init takes it
+    double knudsen_radius;           // m, as vapour_init takes it
+    double vapour_tolerance;         // likewise
+    const struct ring_stores *rings; // kept; NULL: none
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and
@@ -56,8 +61,12 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
 
 // THROAT has lost its last liquid: gas fills it and both its nodes. The vapour gains a
 // link, its cluster may split, and each of its nodes becomes wet, or dry if no liquid
-// is left there. Once for each throat. `total_liquid` is the caller's to change.
+// is left there, in throats or rings. Once for each throat. `total_liquid` is the
+// caller's to change.
 void occupancy_empty_throat(struct occupancy *occupancy, int throat);
+
+// The rings at NODE, where all throats are empty, have dried.
+void occupancy_dry_rings(struct occupancy *occupancy, int node);
 
 // Saturation of THROAT, from 0 to 1. Only at the start and in viscous or Kelvin runs:
 // else emptying_times_saturation knows it.

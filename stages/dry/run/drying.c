@@ -13,6 +13,7 @@
 #include "initial_saturation.h"
 #include "network/checks.h"
 #include "resume.h"
+#include "ring_history.h"
 #include "run.h"
 #include "truncate_history.h"
 
@@ -75,6 +76,9 @@ static void summarise(const struct run *run, struct drying_history *history)
     if (run->conditions->stop_saturation > 0)
         truncate_history(history, run->occupancy.network,
                          run->conditions->stop_saturation);
+    if (run->conditions->rings)
+        ring_history_take(history, run->occupancy.network, &run->rings,
+                          run->scale.length);
 }
 
 // Removes the liquid that is missing at the start, and records it as step 0's changes.
@@ -105,7 +109,7 @@ static void prepare(struct run *run)
 {
     const struct network *network = run->occupancy.network;
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
-    const bool has_kelvin = run->conditions->kelvin;
+    const bool has_kelvin = run->conditions->kelvin, has_rings = run->conditions->rings;
     if (is_viscous)
         run->flow =
             liquid_flow_init(&run->occupancy, run->scale.length,
@@ -118,10 +122,13 @@ static void prepare(struct run *run)
     else
         run->times = emptying_times_init(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
+    const int n = network->n_throat + (has_rings ? network->n_node : 0);
     run->step_saturation = network_saturation(run);
-    run->ended = NEW_ARRAY(int, network->n_throat);
-    run->is_ended = NEW_ARRAY(bool, network->n_throat);
-    run->saturation = NEW_ARRAY(double, network->n_throat);
+    run->ended = NEW_ARRAY(int, n);
+    run->is_ended = NEW_ARRAY(bool, n);
+    run->saturation = NEW_ARRAY(double, n);
+    for (int place = network->n_throat; place < n; place++)
+        run->saturation[place] = 1;
     for (int t = 0; t < network->n_throat; t++)
         run->saturation[t] = occupancy_saturation(&run->occupancy, t);
 }
@@ -154,6 +161,10 @@ static enum status make_occupancy(const struct network *network, struct run *run
         boundary_layer_free(&layer);
         return status;
     }
+    if (conditions->rings)
+        status = ring_stores_init(network, conditions, run->scale.length, &run->rings,
+                                  reason);
+    if (status) return status;
     double *entry_priority = conditions->gravity != 0
                                  ? find_entry_priority(network, conditions, &run->scale)
                                  : NULL; // by radius
@@ -162,7 +173,8 @@ static enum status make_occupancy(const struct network *network, struct run *run
         .gas_parts = conditions->liquid != LIQUID_IMMOBILE,
         .entry_priority = entry_priority,
         .knudsen_radius = knudsen_radius(conditions),
-        .vapour_tolerance = conditions->vapour_tolerance};
+        .vapour_tolerance = conditions->vapour_tolerance,
+        .rings = conditions->rings ? &run->rings : NULL};
     status = occupancy_init(network, conditions->open_walls, &form, layer,
                             &run->occupancy, reason);
     free(entry_priority);
@@ -204,6 +216,7 @@ static void free_run(struct run *run)
     free(run->is_ended);
     free(run->saturation);
     occupancy_free(&run->occupancy);
+    ring_stores_free(&run->rings);
 }
 
 // All checks before anything is made. A run with a tolerance cannot be kept: the state
@@ -234,6 +247,10 @@ enum status dry_network(const struct network *network,
                    "vapour_tolerance: must be 0 where a checkpoint is kept, is %g: "
                    "with 0 the vapour is exact; or run without --checkpoint",
                    conditions->vapour_tolerance);
+    if (!status && conditions->rings && keeper && (keeper->due || keeper->begin))
+        status = refuse(reason, STATUS_BAD_DATA,
+                        "rings: must be none where a checkpoint is kept; or run "
+                        "without --checkpoint");
     if (!status) status = begin_run(&run, keeper, reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);

@@ -6,8 +6,9 @@
 // completely empty and through a boundary layer above the open wall [K 3.9]. A node
 // that touches both liquid and gas is wet: its vapour is saturated, and what it
 // evaporates is shared to the liquid throats at the node in proportion to their
-// cross-sections. Left out: liquid films, adsorption, viscosity of the gas, gradients
-// of temperature [K 3.4.2].
+// cross-sections. With rings a throat leaves liquid at the contacts around it, which
+// keeps its nodes wet until it has dried. Left out: liquid films, adsorption, viscosity
+// of the gas, gradients of temperature [K 3.4.2].
 //
 // Everything here is in SI units. Inside, lengths are scaled by the mean throat length
 // and vapour by its driving force, so that the same network at another scale gives the
@@ -19,6 +20,8 @@
 #include "checkpoint/keeper.h"
 #include "dry/conditions.h"
 #include "network/network.h"
+
+struct ring_history;
 
 enum event_kind {
     EVENT_EMPTIED = 0, // completely
@@ -57,6 +60,8 @@ struct drying_history {
     // Saturation at which the rate first is below first_period_rate_fraction times the
     // first rate.
     double first_period_end_saturation;
+
+    struct ring_history *rings; // what became of rings (ring_history.h); NULL: none
 
     double boundary_layer_thickness; // m
     int boundary_layers;

@@ -6,8 +6,9 @@
 //
 // In this order: the rate of now; `duration` to the first timer that ends; time and
 // evaporated mass; events of all throats that end together; gas fills these, which
-// changes rates and clusters; breakthrough; the record. The rate must be read before
-// gas fills anything, as it is that of the interval that ends here.
+// changes rates and clusters; breakthrough; the record (rings as n_throat + node). The
+// rate must be read before gas fills anything, as it is that of the interval that ends
+// here.
 #include "run.h"
 
 #include <math.h>
@@ -55,7 +56,8 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
     compensated_add(&run->evaporated, rate * duration);
     const double time = compensated_value(run->time) * run->scale.time;
     for (int k = 0; k < times->n_ended; k++) {
-        recorder_add_event(&run->recorder, time, times->ended[k], EVENT_EMPTIED);
+        if (times->ended[k] < run->occupancy.network->n_throat)
+            recorder_add_event(&run->recorder, time, times->ended[k], EVENT_EMPTIED);
         run->ended[run->n_ended++] = times->ended[k];
     }
     emptying_times_empty_ended(times);

@@ -8,6 +8,7 @@
 #include "history.h"
 
 #include "basics/memory.h"
+#include "ring_history.h"
 
 #include <stdlib.h>
 
@@ -159,5 +160,6 @@ void drying_history_free(struct drying_history *history)
     free(history->change_throat);
     free(history->change_saturation);
     free(history->pressure);
+    ring_history_free(history->rings);
     *history = (struct drying_history){0};
 }

@@ -108,6 +108,8 @@ double *recorded_saturations(const struct network *network,
 void start_from(struct occupancy *occupancy, const double *start)
 {
     struct compensated total = {0};
+    for (int i = 0; occupancy->rings && i < occupancy->network->n_node; i++)
+        compensated_add(&total, occupancy->rings->at_node[i]);
     for (int t = 0; t < occupancy->network->n_throat; t++) {
         if (!(occupancy->volume[t] > 0)) continue;
         if (start[t] == 0) {

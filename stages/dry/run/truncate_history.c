@@ -18,9 +18,10 @@ static void cut_changes(struct drying_history *history, const struct network *ne
                         double share)
 {
     const int last = history->n_step - 1;
-    double *now = NEW_ARRAY(double, network->n_throat);
-    for (int t = 0; t < network->n_throat; t++)
-        now[t] = network->throat_kind[t] == THROAT_NETWORK;
+    const int n = network->n_throat + network->n_node; // rings, behind the throats
+    double *now = NEW_ARRAY(double, n);
+    for (int t = 0; t < n; t++)
+        now[t] = t >= network->n_throat || network->throat_kind[t] == THROAT_NETWORK;
     for (int64_t k = 0; k < history->change_offset[last]; k++)
         now[history->change_throat[k]] = history->change_saturation[k];
     for (int64_t k = history->change_offset[last]; k < history->change_offset[last + 1];

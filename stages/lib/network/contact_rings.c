@@ -125,6 +125,13 @@ static enum status ring_volume(const struct network *network,
     return status == STATUS_NO ? STATUS_OK : status;
 }
 
+static enum status refuse_ring(int face, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "/faces/particles: row %d: no ring was found between these grains",
+                  face);
+}
+
 bool limit_parts(const struct network *network, const struct contact_rings *rings,
                  int throat, double *volume)
 {
@@ -140,21 +147,62 @@ bool limit_parts(const struct network *network, const struct contact_rings *ring
     return true;
 }
 
-// The parts of THROAT, not yet limited.
-static enum status find_parts(const struct network *network,
-                              const struct contact_rings *rings,
-                              const struct ring_liquid *liquid, int throat,
-                              double suction, double *volume)
+// Parts by their rings: those of face f are part[first[f]] .. part[first[f+1] - 1].
+struct parts_of_rings {
+    int *first, *part, *throat; // (n_face+1), (n_part), (n_part) by part
+};
+
+static struct parts_of_rings sort_by_rings(const struct network *network,
+                                           const struct contact_rings *rings)
 {
     const struct throat_sides *parts = &rings->parts;
-    for (int64_t k = parts->offset[throat]; k < parts->offset[throat + 1]; k++) {
-        double whole = 0;
-        if (suction > 0 && rings->share[k] > 0) {
-            const enum status status =
-                ring_volume(network, rings, parts->face[k], liquid, suction, &whole);
-            if (status) return status;
+    struct parts_of_rings by = {NEW_ARRAY(int, network->n_face + 2),
+                                NEW_ARRAY(int, rings->n_part),
+                                NEW_ARRAY(int, rings->n_part)};
+    for (int k = 0; k < rings->n_part; k++)
+        by.first[parts->face[k] + 2]++;
+    for (int f = 0; f < network->n_face; f++)
+        by.first[f + 2] += by.first[f + 1];
+    for (int t = 0; t < network->n_throat; t++)
+        for (int64_t k = parts->offset[t]; k < parts->offset[t + 1]; k++) {
+            by.throat[k] = t;
+            by.part[by.first[parts->face[k] + 1]++] = (int)k; // moves to its end
         }
-        volume[k] = rings->share[k] * whole;
+    return by;
+}
+
+// Rising suctions; a handful.
+static void sort_by_suction(int *part, int n, const int *throat, const double *suction)
+{
+    for (int k = 1; k < n; k++) {
+        const int moved = part[k];
+        int to = k;
+        for (; to > 0 && suction[throat[part[to - 1]]] > suction[throat[moved]]; to--)
+            part[to] = part[to - 1];
+        part[to] = moved;
+    }
+}
+
+// The N parts of the ring at FACE, not yet limited, at rising suctions: once it has
+// broken it stays broken, and equal suctions are solved once.
+static enum status find_parts(const struct network *network,
+                              const struct contact_rings *rings,
+                              const struct ring_liquid *liquid, int face,
+                              const int *part, int n, const int *throat,
+                              const double *suction, double *volume)
+{
+    double solved = 0, whole = INFINITY;
+    for (int k = 0; k < n; k++) {
+        const double p = suction[throat[part[k]]];
+        volume[part[k]] = 0;
+        if (!(p > 0) || !(rings->share[part[k]] > 0) || !(whole > 0)) continue;
+        if (p > solved) {
+            const enum status status =
+                ring_volume(network, rings, face, liquid, p, &whole);
+            if (status) return status;
+            solved = p;
+        }
+        volume[part[k]] = rings->share[part[k]] * whole;
     }
     return STATUS_OK;
 }
@@ -164,20 +212,24 @@ enum status ring_volumes(const struct network *network,
                          const struct ring_liquid *liquid, const double *suction,
                          double *volume, int *limited, struct reason *reason)
 {
-    int failed = network->n_throat, count = 0;
-#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)                 \
-    reduction(+ : count)
-    for (int t = 0; t < network->n_throat; t++) {
-        if (find_parts(network, rings, liquid, t, suction[t], volume))
-            failed = t < failed ? t : failed;
-        else
-            count += limit_parts(network, rings, t, volume);
+    struct parts_of_rings by = sort_by_rings(network, rings);
+    int failed = network->n_face;
+#pragma omp parallel for schedule(dynamic, 64) reduction(min : failed)
+    for (int f = 0; f < network->n_face; f++) {
+        int *part = by.part + by.first[f];
+        const int n = by.first[f + 1] - by.first[f];
+        sort_by_suction(part, n, by.throat, suction);
+        if (find_parts(network, rings, liquid, f, part, n, by.throat, suction, volume))
+            failed = f < failed ? f : failed;
     }
-    *limited = count;
-    if (failed == network->n_throat) return STATUS_OK;
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "no ring was found beside throat %d at a suction of %g Pa", failed,
-                  suction[failed]);
+    free(by.first);
+    free(by.part);
+    free(by.throat);
+    if (failed < network->n_face) return refuse_ring(failed, reason);
+    *limited = 0;
+    for (int t = 0; t < network->n_throat; t++)
+        *limited += limit_parts(network, rings, t, volume);
+    return STATUS_OK;
 }
 
 enum status whole_rings(const struct network *network,
@@ -193,7 +245,5 @@ enum status whole_rings(const struct network *network,
             failed = f < failed ? f : failed;
     }
     if (failed == network->n_face) return STATUS_OK;
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "no ring was found at face %d at a suction of %g Pa", failed,
-                  suction);
+    return refuse_ring(failed, reason);
 }

@@ -9,6 +9,14 @@
 
 #include <stdbool.h>
 
+// Where rings have their liquid from, once gas surrounds them.
+enum ring_supply {
+    RINGS_NONE,
+    RINGS_ISOLATED, // each part keeps what it held when gas cut it off
+    RINGS_JOINED // films without resistance join all to liquid of the highest suction
+                 // so far: they drain as it rises
+};
+
 struct ring_liquid {
     double surface_tension; // N/m, above 0
     double contact_angle;   // rad, from 0 to below pi/2

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Rings that throats leave in `dry`: their books against the datasets added up here, their volumes
+# against `rings`, and drying without any against drying that has no rings.
+import filecmp
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, WATER, done, ok, run, scratch
+
+R = 1e-6
+folder = scratch()
+
+
+def at(name):
+    return os.path.join(folder.name, name)
+
+
+def words(settings):
+    return [w for s in settings for w in ("-s", s)]
+
+
+def network(packing, name="network"):
+    run("tessellate", "-q", *words(["throat_volume=void", "throat_radius=entry"]), packing, "-o", at("diagram"))
+    run("merge-nodes", "-q", at("diagram"), "-o", at(name))
+    return at(name)
+
+
+def dry(path, *settings, name="drying"):
+    run("dry", "-q", *words(["step_interval=0", *settings]), path, "-o", at(name))
+    return h5py.File(at(name))
+
+
+def lattice(radius):
+    grid = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    np.savetxt(at("lattice.txt"), np.column_stack([(2 * grid + 1) * R, np.full(64, radius)]), fmt="%.17g")
+    run("pack", "-q", *words(["method=import", "lower=[0,0,0]", f"upper={[8 * R] * 3}", "bonds=none", "check=none",
+                              "periodic=[true,true,false]"]), at("lattice.txt"), "-o", at("lattice"))
+    return at("lattice")
+
+
+def replayed(file, n, group, what):
+    """What is in each of N throats, or nodes' rings, at each step."""
+    row, state = np.ones(n), []
+    offset, index, value = (file[f"{group}/{name}"][:] for name in ("offset", what, "saturation"))
+    for begin, end in zip(offset, offset[1:]):
+        row[index[begin:end]] = value[begin:end]
+        state.append(row.copy())
+    return np.array(state)
+
+
+def books(file):
+    """Largest difference between /history and its throats and rings, and between the part in rings and its sum."""
+    volume, ends = file["throats/volume"][:], file["throats/nodes"][:]
+    throats = replayed(file, len(volume), "changes", "throat")
+    nodes = replayed(file, len(file["nodes/kind"]), "ring_changes", "node")
+    left = np.bincount(file["rings/throat"][:], file["rings/volume"][:], len(volume))
+    kept = nodes[:, ends].mean(axis=2) * left
+    total = (throats * (volume - left) + kept).sum(axis=1) / volume.sum()
+    alone = np.where(throats == 0, kept, 0).sum(axis=1) / volume.sum()
+    return (abs(total - file["history/saturation"][:]).max(), abs(alone - file["history/ring_saturation"][:]).max(),
+            throats, nodes)
+
+
+# ---- the books of random packings ---------------------------------------------------------
+
+run("pack", "-q", *words(["method=soft_spheres", "count=100", f"radius={R}", "sizes.distribution=normal",
+                          "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
+net = network(at("packing"))
+for settings in ([], ["liquid=immobile"], ["contact_angle=50"], ["gravity=9.81"],
+                 ["stop_saturation=0.3"], ["start_saturation=0.6"], ["air_vapour_pressure=2338.99"]):
+    with dry(net, "rings=isolated", *WATER, *settings) as file:
+        total, alone, throats, nodes = books(file)
+        summary = dict(file["summary"].attrs)
+        ok(total < 1e-12 and alone < 1e-12 and summary["balance_error"] < 1e-12 and summary["residual"] < 1e-12,
+           f"{settings or 'inviscid'}: throats, rings and vapour add up at all steps", (total, alone, summary))
+        ends = file["throats/nodes"][:]
+        wet = (nodes < 1)[:, ends].any(axis=2) & (throats > 0)
+        ok(not wet.any(), "no rings dry beside a throat that holds liquid", wet.sum())
+        if not settings:
+            inviscid = file["history/saturation"][:], file["history/time"][:], summary["residual_saturation"]
+        if settings == ["air_vapour_pressure=2338.99"]:
+            ok(np.allclose(file["history/saturation"][:], inviscid[0], rtol=0, atol=1e-9) and
+               np.allclose(file["history/time"][:] / file["history/time"][-1],
+                           inviscid[1] / inviscid[1][-1], rtol=1e-6),
+               "vapour near saturation dries it in the same way, only slower", file["history/time"][-1] / inviscid[1][-1])
+ok(0 < inviscid[2] < 0.2, "some is left when the last throat has emptied", inviscid[2])
+run("dry", "-q", "--threads", "2", *words(["step_interval=0", "rings=isolated", *WATER]), net, "-o", at("two"))
+dry(net, "rings=isolated", *WATER).close()
+ok(filecmp.cmp(at("drying"), at("two"), shallow=False), "one thread and two give the same bytes")
+
+# ---- the rings ----------------------------------------------------------------------------
+
+for radius, angle, what in (R, 0, "touch"), (1.02 * R, 30, "overlap"), (0.98 * R, 0, "are apart"), (R, 80, "touch, at 80 degrees"):
+    packing = lattice(radius)
+    with dry(network(packing), "rings=isolated", f"contact_angle={angle}", *WATER) as file:
+        suction = 2 * 0.07274 * np.cos(np.radians(angle)) / file["throats/radius"][:].min()
+        exact = json.loads(run("rings", "-q", *words(["fluid=other", "surface_tension=0.07274", f"contact_angle={angle}",
+                                                      f"suctions=[{float(suction)!r}]"]), packing))
+        got = file["summary"].attrs["ring_volume"]
+        ok(len(file["rings/face"]) == exact["rings"][0] and abs(got / exact["volume"][0] - 1) < 1e-9,
+           f"grains that {what}: throats leave the rings of `rings`", (got, exact["volume"]))
+
+# ---- none ---------------------------------------------------------------------------------
+
+bare = network(lattice(0.8 * R))
+for liquid in "inviscid", "immobile":
+    with dry(bare, f"liquid={liquid}", name="without") as without, dry(bare, f"liquid={liquid}", "rings=isolated") as kept:
+        same = [np.array_equal(without[name][:], kept[name][:]) for group in ("history", "events", "changes") for name in
+                (f"{group}/{key}" for key in without[group])]
+        ok(len(kept["rings/face"]) == 0 and all(same), f"{liquid}: across gaps beyond rupture drying is to the bit as without", same)
+
+# ---- refusals -----------------------------------------------------------------------------
+
+for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is viscous"),
+                       (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved")]:
+    refused = subprocess.run([f"{BIN}/dry", "-q", *words(["rings=isolated", *settings]), net], capture_output=True, text=True, check=False)
+    ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
+refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=isolated", net, "-o", at("no")],
+                         capture_output=True, text=True, check=False)
+ok(refused.returncode == 65 and "rings: must be none where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
+done()
