@@ -68,6 +68,10 @@ static enum status check_liquid(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "rings: must be none where liquid is viscous or menisci are "
                       "curved (kelvin)");
+    if (conditions->rings == RINGS_JOINED && conditions->liquid == LIQUID_IMMOBILE)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "rings: must not be joined where liquid is immobile: nothing "
+                      "flows through films either");
     if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0 &&
         !conditions->kelvin && !conditions->rings)
         return STATUS_OK;

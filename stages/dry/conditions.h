@@ -5,7 +5,7 @@
 
 #include "basics/status.h"
 #include "dry/gas/boundary_layer.h"
-#include "network/network.h"
+#include "network/contact_rings.h"
 
 // How the liquid moves between the throats of a cluster.
 enum liquid_limit {
@@ -36,7 +36,7 @@ struct drying_conditions {
     double gravity;         // towards -z, m/s2; 0: none
     bool knudsen;           // molecules meet the walls of narrow throats
     bool kelvin;            // curved menisci have less vapour
-    bool rings;             // throats leave liquid at contacts, which dries by itself
+    enum ring_supply rings; // throats leave liquid at contacts
     int n_snapshot;
     const double *snapshot; // (n_snapshot) saturations, each below the one before:
                             // where the pressures of viscous liquid are kept

@@ -86,14 +86,20 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
             conditions->vapour_tolerance);
         append(text, size, line);
     }
-    if (conditions->rings)
+    if (conditions->rings == RINGS_ISOLATED)
         append(text, size,
                "rings stay at contacts as throats empty, exact bridges, and dry when "
                "their node has no other liquid\n");
+    if (conditions->rings == RINGS_JOINED)
+        append(text, size,
+               "rings stay at contacts as throats empty, exact bridges; films without "
+               "resistance join all liquid and feed them until the last throat has "
+               "emptied\n");
     append(text, size, "left out: ");
     if (!gravity) append(text, size, "gravity, ");
     if (!conditions->knudsen) append(text, size, "Knudsen effect, ");
     if (!conditions->kelvin) append(text, size, "Kelvin effect, ");
-    append(text, size, "films, temperature");
+    if (conditions->rings != RINGS_JOINED) append(text, size, "films, ");
+    append(text, size, "temperature");
     return text;
 }

@@ -16,7 +16,6 @@
 
 #include "basics/memory.h"
 #include "conditions.h"
-#include "network/contact_rings.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -49,10 +48,14 @@ const struct parameter dry_table[] = {
          "p_c = 2 surface_tension cos(contact_angle) / r of each throat (immobile), of "
          "a cluster's widest meniscus (inviscid), or as the flow makes it (viscous); "
          "vapour also goes from wide throats to narrow ones, and may condense there"},
-    {"rings", PARAMETER_CHOICE, "1", "\"none\"", AT(rings), .choices = "none|isolated",
-     .text = "liquid that throats leave around contacts and in gaps when they empty: "
-             "none, or rings of the suction at which gas enters the throat, which dry "
-             "when their node has no other liquid (inviscid, immobile)"},
+    {"rings", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
+     .choices = "none|isolated|joined",
+     .text =
+         "liquid that throats leave around contacts and in gaps when they empty: "
+         "none; rings of the suction at which gas enters the throat, which dry when "
+         "their node has no other liquid (inviscid, immobile); or such rings that "
+         "films without resistance feed as long as any throat holds liquid "
+         "(inviscid)"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
      .text = "viscous: the flow is computed again when the saturation of a throat has "
@@ -202,7 +205,7 @@ enum status complete_conditions(struct dry_parameters *parameters,
     const enum status status = complete_fluids(parameters, reason);
     if (status) return status;
     conditions->liquid = (enum liquid_limit)parameters->liquid;
-    conditions->rings = parameters->rings != RINGS_NONE;
+    conditions->rings = (enum ring_supply)parameters->rings;
     conditions->open_walls = parameters->open_walls;
     conditions->n_snapshot = parameters->snapshots.count;
     conditions->snapshot = parameters->snapshots.value;

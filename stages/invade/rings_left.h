@@ -14,7 +14,8 @@ struct rings_left {
     int limited; // throats that hold less in rings than these ask for
 };
 
-// Where gas was from the start rings are joined ones only. WEIGHT: of the liquid, N/m3,
+// Joined rings have the highest pressure so far, and drain as it rises. Where gas was
+// from the start rings are joined ones only. WEIGHT: of the liquid, N/m3,
 // by which suction grows with height; 0 with RINGS_JOINED. The caller frees LEFT with
 // rings_left_free, also after a failure. Statuses as contact_rings_init and
 // ring_volumes.

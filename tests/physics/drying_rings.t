@@ -90,6 +90,18 @@ for settings in ([], ["liquid=immobile"], ["contact_angle=50"], ["gravity=9.81"]
                np.allclose(file["history/time"][:] / file["history/time"][-1],
                            inviscid[1] / inviscid[1][-1], rtol=1e-6),
                "vapour near saturation dries it in the same way, only slower", file["history/time"][-1] / inviscid[1][-1])
+with dry(net, "rings=joined", *WATER) as file:
+    total, alone, throats, nodes = books(file)
+    summary, void = dict(file["summary"].attrs), file["throats/volume"][:].sum()
+    fed = throats.any(axis=1)
+    ok(total < 1e-12 and alone < 1e-12 and summary["balance_error"] < 1e-12 and summary["residual"] < 1e-12,
+       "joined by films: throats, rings and vapour add up at all steps", (total, alone, summary))
+    ok((nodes[fed] == 1).all() and abs(summary["residual_saturation"] * void / summary["ring_volume"] - 1) < 1e-12,
+       "films feed all rings until the last throat has emptied", summary)
+    order = file["events/throat"][:]
+    run("invade", "-q", *words(["trapping=false"]), net, "-o", at("invasion"))
+    with h5py.File(at("invasion")) as invasion:
+        ok(np.array_equal(order, invasion["events/throat"][:]), "in the order of invasion without trapping")
 ok(0 < inviscid[2] < 0.2, "some is left when the last throat has emptied", inviscid[2])
 run("dry", "-q", "--threads", "2", *words(["step_interval=0", "rings=isolated", *WATER]), net, "-o", at("two"))
 dry(net, "rings=isolated", *WATER).close()
@@ -107,6 +119,14 @@ for radius, angle, what in (R, 0, "touch"), (1.02 * R, 30, "overlap"), (0.98 * R
         ok(len(file["rings/face"]) == exact["rings"][0] and abs(got / exact["volume"][0] - 1) < 1e-9,
            f"grains that {what}: throats leave the rings of `rings`", (got, exact["volume"]))
 
+with dry(network(lattice(R)), "rings=joined", *WATER) as file:
+    rate, time = file["history/rate"][:], file["history/time"][:]
+    fed = file["history/clusters"][:] > 0
+    first = time[np.flatnonzero(~fed)[0]]
+    lost = file["summary"].attrs["liquid_mass"] * (1 - file["summary"].attrs["residual_saturation"])
+    ok(np.allclose(rate[fed], rate[0], rtol=1e-12) and abs(first * rate[0] / lost - 1) < 1e-12,
+       "rings at all nodes keep the first rate until the last throat has emptied", (rate.min(), first * rate[0] / lost))
+
 # ---- none ---------------------------------------------------------------------------------
 
 bare = network(lattice(0.8 * R))
@@ -119,6 +139,7 @@ for liquid in "inviscid", "immobile":
 # ---- refusals -----------------------------------------------------------------------------
 
 for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is viscous"),
+                       (["rings=joined", "liquid=immobile"], "rings: must not be joined where liquid is immobile"),
                        (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved")]:
     refused = subprocess.run([f"{BIN}/dry", "-q", *words(["rings=isolated", *settings]), net], capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)

@@ -307,15 +307,24 @@ static void empty_rings(struct emptying_times *times, int place)
     share_by_node(times, node);
 }
 
+// A cluster has no throat any more: from now on rings that it fed dry by themselves.
+static void end_films(struct emptying_times *times)
+{
+    for (int k = 0; k < times->occupancy->n_wet; k++)
+        share_by_node(times, times->occupancy->wet[k]);
+}
+
 // Returns whether a node dries.
 static bool empty_throat(struct emptying_times *times, int throat)
 {
     struct occupancy *occupancy = times->occupancy;
+    const int cluster = occupancy->clusters.of_throat[throat];
     const int k = times->timer[reservoir_of(times, throat)];
     stop_timer(times, k);
     mark_dirty(times, k);
     occupancy_empty_throat(occupancy, throat);
     share_by_ends(times, throat);
+    if (occupancy->feeder && occupancy->clusters.size[cluster] == 0) end_films(times);
     for (int l = 0; l < occupancy->clusters.n_moved; l++)
         share_by_ends(times, occupancy->clusters.moved[l]);
     const int32_t *node = occupancy->network->throat_nodes[throat];

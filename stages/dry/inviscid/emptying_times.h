@@ -9,7 +9,8 @@
 //
 // Rings at a node are a reservoir of their own, which loses what the node evaporates
 // once no throat there holds liquid: while one does, its flatter meniscus keeps the
-// vapour from them. They are numbered behind the throats: n_throat + node.
+// vapour from them. They are numbered behind the throats: n_throat + node. Films let
+// their cluster lose it in their place, as long as it has a throat with liquid.
 #ifndef CRAQUELURE_EMPTYING_TIMES_H
 #define CRAQUELURE_EMPTYING_TIMES_H
 

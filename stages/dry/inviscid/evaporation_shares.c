@@ -86,6 +86,16 @@ static void add_share(struct emptying_times *times, int node, int incidence, int
     times->share[times->n_share++] = (struct evaporation_share){part, node, timer};
 }
 
+// What supplies the rings at NODE: themselves, or liquid that films join to them.
+static int reservoir_of_rings(const struct emptying_times *times, int node)
+{
+    const struct occupancy *occupancy = times->occupancy;
+    const int feeder = occupancy->feeder ? occupancy->feeder[node] : -1;
+    return feeder >= 0 && occupancy->clusters.size[feeder] > 0
+               ? feeder
+               : occupancy->network->n_throat + node;
+}
+
 // Shares are proportional to the cross-sections of the throats that hold liquid now.
 void share_by_node(struct emptying_times *times, int node)
 {
@@ -106,7 +116,7 @@ void share_by_node(struct emptying_times *times, int node)
             add_share(times, node, k, reservoir_of(times, throat), section / sum);
     }
     if (!(sum > 0) && occupancy->has_rings && occupancy->has_rings[node])
-        add_share(times, node, begin, occupancy->network->n_throat + node, 1);
+        add_share(times, node, begin, reservoir_of_rings(times, node), 1);
     for (int k = begin; k < end; k++) {
         const int place = times->share_place[k];
         if (place < 0) continue;

@@ -229,7 +229,7 @@ void clusters_empty_throat(struct clusters *clusters, int throat)
     // At a node that had gas before, liquid was parted then.
     bool search_here[2];
     for (int end = 0; end < 2; end++) {
-        search_here[end] = clusters->joins[node[end]];
+        search_here[end] = clusters->joins[node[end]] && !clusters->never_part;
         clusters->joins[node[end]] &= !clusters->gas_parts;
     }
     for (int end = 0; end < 2; end++)

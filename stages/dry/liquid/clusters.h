@@ -27,6 +27,7 @@ struct clusters {
     const struct network *network;
     const struct incidence *incidence;
     bool gas_parts;         // whether gas in a node separates the liquid around it
+    bool never_part;        // films keep together what was a cluster at the start
     bool *joins;            // (n_node) liquid is connected through this node
     int *of_throat;         // (n_throat) its cluster, -1 if it holds no liquid
     bool *meniscus;         // (n_throat) gas touches one of its ends

@@ -32,6 +32,20 @@ static void place_rings(struct occupancy *occupancy)
     }
 }
 
+// With films all liquid of a cluster stays together, and feeds the rings at its nodes.
+static void add_films(struct occupancy *occupancy)
+{
+    const struct network *network = occupancy->network;
+    occupancy->clusters.never_part = true;
+    occupancy->feeder = NEW_ARRAY(int, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        occupancy->feeder[i] = -1;
+    for (int t = 0; t < network->n_throat; t++)
+        for (int end = 0; end < 2 && occupancy->clusters.of_throat[t] >= 0; end++)
+            occupancy->feeder[network->throat_nodes[t][end]] =
+                occupancy->clusters.of_throat[t];
+}
+
 // Throats of other kinds have volume 0 and never liquid.
 static void fill_throats(struct occupancy *occupancy, double length)
 {
@@ -123,6 +137,7 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
                                     &occupancy->layer, form->vapour_tolerance);
     occupancy->clusters = clusters_init(network, &occupancy->incidence,
                                         form->entry_priority, form->gas_parts);
+    if (form->films) add_films(occupancy);
     return expose_surface(occupancy, reason);
 }
 
@@ -180,6 +195,7 @@ void occupancy_free(struct occupancy *occupancy)
     free(occupancy->gas);
     free(occupancy->liquid_beside);
     free(occupancy->has_rings);
+    free(occupancy->feeder);
     free(occupancy->wet);
     free(occupancy->wet_place);
     *occupancy = (struct occupancy){0};

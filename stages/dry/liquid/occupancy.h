@@ -33,6 +33,7 @@ struct occupancy {
     bool *gas;          // (n_node)
     int *liquid_beside; // (n_node) throats with liquid at the node
     bool *has_rings;    // (n_node) rings there hold liquid; NULL without rings
+    int *feeder;        // (n_node) with films: cluster that feeds rings there, -1: none
     int n_wet;
     int *wet;          // (n_wet) nodes with liquid on one side and gas on the other
     int *wet_place;    // (n_node) in wet, -1 where not wet
@@ -47,6 +48,7 @@ struct occupancy_form {
     double knudsen_radius;           // m, as vapour_init takes it
     double vapour_tolerance;         // likewise
     const struct ring_stores *rings; // kept; NULL: none
+    bool films;                      // join what was a cluster at the start
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and

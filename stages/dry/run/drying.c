@@ -174,7 +174,8 @@ static enum status make_occupancy(const struct network *network, struct run *run
         .entry_priority = entry_priority,
         .knudsen_radius = knudsen_radius(conditions),
         .vapour_tolerance = conditions->vapour_tolerance,
-        .rings = conditions->rings ? &run->rings : NULL};
+        .rings = conditions->rings ? &run->rings : NULL,
+        .films = conditions->rings == RINGS_JOINED};
     status = occupancy_init(network, conditions->open_walls, &form, layer,
                             &run->occupancy, reason);
     free(entry_priority);

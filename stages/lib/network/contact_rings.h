@@ -13,8 +13,7 @@
 enum ring_supply {
     RINGS_NONE,
     RINGS_ISOLATED, // each part keeps what it held when gas cut it off
-    RINGS_JOINED // films without resistance join all to liquid of the highest suction
-                 // so far: they drain as it rises
+    RINGS_JOINED    // films without resistance join all to the rest of the liquid
 };
 
 struct ring_liquid {
