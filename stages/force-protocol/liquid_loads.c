@@ -237,8 +237,13 @@ static void step_on(struct liquid_loads *liquid)
     apply_changes(&liquid->record->drying, liquid->step, liquid->before);
     note_gas(liquid);
     liquid->share = 0;
-    if (!is_at_last_step(liquid))
-        apply_changes(&liquid->record->drying, liquid->step + 1, liquid->after);
+    const struct drying_record *of_rings = &liquid->record->rings.changes;
+    if (liquid->rings_before)
+        apply_changes(of_rings, liquid->step, liquid->rings_before);
+    if (is_at_last_step(liquid)) return;
+    apply_changes(&liquid->record->drying, liquid->step + 1, liquid->after);
+    if (liquid->rings_after)
+        apply_changes(of_rings, liquid->step + 1, liquid->rings_after);
 }
 
 void liquid_loads_advance(struct liquid_loads *liquid)
@@ -282,10 +287,23 @@ static int count_menisci(const struct liquid_loads *liquid, int throat)
     return has_meniscus_at(liquid, node[0]) + has_meniscus_at(liquid, node[1]);
 }
 
-void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS])
+double liquid_loads_filling(const struct liquid_loads *liquid, int throat)
 {
     const double before = liquid->before[throat];
-    const double saturation = before + liquid->share * (liquid->after[throat] - before);
+    return before + liquid->share * (liquid->after[throat] - before);
+}
+
+double liquid_loads_rings(const struct liquid_loads *liquid, int throat)
+{
+    const int32_t *node = liquid->network->throat_nodes[throat];
+    const double before = liquid->rings_before[node[0]] + liquid->rings_before[node[1]];
+    const double after = liquid->rings_after[node[0]] + liquid->rings_after[node[1]];
+    return (before + liquid->share * (after - before)) / 2;
+}
+
+void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS])
+{
+    const double saturation = liquid_loads_filling(liquid, throat);
     const double suction =
         liquid->suction ? liquid->suction[throat] : liquid->law.uniform;
     const double line =
@@ -299,6 +317,19 @@ void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[
         liquid->law.weight > 0 && saturation > 0
             ? liquid->law.weight * saturation * throat_volume(liquid->network, throat)
             : 0;
+}
+
+// Before the first step rings are whole.
+static void begin_rings(struct liquid_loads *liquid)
+{
+    const int n = liquid->network->n_node;
+    const struct drying_record *changes = &liquid->record->rings.changes;
+    liquid->rings_before = NEW_ARRAY(double, n);
+    for (int i = 0; i < n; i++)
+        liquid->rings_before[i] = 1;
+    apply_changes(changes, 0, liquid->rings_before);
+    liquid->rings_after = duplicate(liquid->rings_before, (size_t)n, sizeof(double));
+    if (!is_at_last_step(liquid)) apply_changes(changes, 1, liquid->rings_after);
 }
 
 struct liquid_loads liquid_loads_begin(const struct network *network,
@@ -318,6 +349,7 @@ struct liquid_loads liquid_loads_begin(const struct network *network,
     note_gas(&liquid);
     liquid.after = duplicate(liquid.before, (size_t)n, sizeof *liquid.after);
     if (!is_at_last_step(&liquid)) apply_changes(&record->drying, 1, liquid.after);
+    if (record->rings.n > 0) begin_rings(&liquid);
     find_suction(&liquid);
     return liquid;
 }
@@ -326,6 +358,8 @@ void liquid_loads_free(struct liquid_loads *liquid)
 {
     free(liquid->before);
     free(liquid->after);
+    free(liquid->rings_before);
+    free(liquid->rings_after);
     free(liquid->gas);
     free(liquid->suction);
     free(liquid->field);

@@ -6,10 +6,22 @@
 
 #include "network/drying_record.h"
 
+// The rings that throats left (drying.json); n = 0: none are known.
+struct ring_record {
+    int n;
+    int32_t *face;                // (n)
+    double *separation;           // (n) m
+    int64_t *offset;              // (n+1) parts
+    int32_t *throat;              // (offset[n])
+    double *volume;               // (offset[n]) m3
+    struct drying_record changes; // of nodes, in place of throats; without times
+};
+
 // The drying, as read from its artifact.
 struct liquid_record {
     struct drying_record drying; // at least one step
-    bool *exposed;               // (n_node) gas touches the node from the beginning
+    struct ring_record rings;
+    bool *exposed; // (n_node) gas touches the node from the beginning
     int n_snapshot;
     double *snapshot_time; // (n_snapshot)
     double *pressure;      // (n_snapshot * n_node) Pa, of the liquid less that of the
@@ -55,10 +67,11 @@ struct liquid_loads {
     int step;
     double share;           // of the way to the next step
     double *before, *after; // (n_throat) saturations at this step and the next
-    bool *gas;              // (n_node) a throat there has emptied
-    double *suction;        // (n_throat) Pa, now; NULL if uniform
-    double *field;          // (n_snapshot * n_throat) Pa; NULL without
-    bool stale;             // SUCTION is that of before a throat has emptied
+    double *rings_before, *rings_after; // (n_node) of the rings there; NULL: none
+    bool *gas;                          // (n_node) a throat there has emptied
+    double *suction;                    // (n_throat) Pa, now; NULL if uniform
+    double *field;                      // (n_snapshot * n_throat) Pa; NULL without
+    bool stale; // SUCTION is that of before a throat has emptied
 };
 
 // At the first step. Keeps NETWORK and RECORD, which must live as long. The caller
@@ -81,6 +94,11 @@ double liquid_loads_saturation(const struct liquid_loads *liquid);
 
 // The loads of THROAT now, in the units of enum load.
 void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS]);
+
+// Saturation of THROAT now, and of the rings that it leaves: the mean of those at its
+// nodes, which must be known.
+double liquid_loads_filling(const struct liquid_loads *liquid, int throat);
+double liquid_loads_rings(const struct liquid_loads *liquid, int throat);
 
 // Interpolation error of SUCTION_FIELD: the mean difference between the suction of a
 // wet throat in a snapshot and that interpolated between the snapshots before and

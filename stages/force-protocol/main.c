@@ -100,9 +100,11 @@ static const struct parameter table[] = {
      .text = "most bytes of forces to write, 24 per grain and time; more are refused "
              "at once"},
     {"rings.left", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
-     .choices = "none|volume|suction",
-     .text = "liquid that stays at contacts as throats empty: none, a given volume, or "
-             "as much as is in equilibrium with liquid in a throat of mean radius"},
+     .choices = "none|volume|suction|drying",
+     .text =
+         "liquid that stays at contacts as throats empty: none, a given volume, as "
+         "much as is in equilibrium with liquid in a throat of mean radius, or what "
+         "the drying left there (dry.rings), which dries in the end"},
     {"rings.volume", PARAMETER_NUMBER, "1", "1e-3", AT(ring_volume), BETWEEN(1e-9, 1),
      .text = "left=volume: volume of a ring over the cube of the effective radius 2 R1 "
              "R2/(R1 + R2)"},
@@ -248,7 +250,7 @@ static enum status find_action(struct sectors *sectors,
             drop_patches_in_walls(sectors, open_walls, &of[l]);
     }
     if (parameters->gravity > 0) of[LOAD_WEIGHT] = find_liquid_shares(sectors);
-    if (law.rule == RING_NONE) return STATUS_OK;
+    if (law.rule == RING_NONE || law.rule == RING_DRYING) return STATUS_OK;
     const enum status status = find_pendular_rings(sectors, &law, rings, reason);
     of[LOAD_EMPTINESS] = rings->patches;
     return status;
@@ -353,7 +355,11 @@ static void describe(const struct force_parameters *parameters, const char *diff
                                           "growing with height",
                                           "with height as in the drying"};
     char left[200] = "no liquid stays at contacts";
-    if (parameters->rings != RING_NONE)
+    if (parameters->rings == RING_DRYING)
+        snprintf(
+            left, sizeof left,
+            "rings stay where the drying left them, and pull until they have dried");
+    else if (parameters->rings != RING_NONE)
         snprintf(left, sizeof left,
                  "rings stay at %d contacts as throats empty, pull with at most %.6g N "
                  "and do not evaporate",
@@ -431,8 +437,14 @@ int main(int argc, char **argv)
     sectors_free(&sectors);
 
     struct liquid_record record =
-        read_record(input, &network, parameters.suction == SUCTION_FIELD);
+        read_record(input, &network, parameters.suction == SUCTION_FIELD,
+                    parameters.rings == RING_DRYING);
     check_end(&record.drying, (double)parameters.steps, input->path);
+    if (parameters.rings == RING_DRYING)
+        status = drying_rings_init(&network, &record.rings, parameters.surface_tension,
+                                   parameters.contact_angle * (M_PI / 180),
+                                   &loads.rings, &reason);
+    if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     find_weight(&network, &record, parameters.gravity, input, &law);
     const struct process process = {&network, &record, &law, &loads};
     struct protocol protocol = find_protocol(&process, &parameters);

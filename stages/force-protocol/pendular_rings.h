@@ -7,8 +7,9 @@
 
 enum ring_rule {
     RING_NONE,
-    RING_VOLUME, // of a given part of the cube of the effective radius [G 1]
-    RING_SUCTION // in equilibrium with liquid of a given suction
+    RING_VOLUME,  // of a given part of the cube of the effective radius [G 1]
+    RING_SUCTION, // in equilibrium with liquid of a given suction
+    RING_DRYING   // those that the drying left (drying_rings.h)
 };
 
 struct ring_law {

@@ -7,6 +7,7 @@
 //     steps and changes    artifact_get_drying
 //     exposed (n_node)     /boundary_layer/node, else nodes on /summary/open_walls
 //     snapshot_time (s)    /snapshots/time
+//     rings                /rings and /ring_changes
 //     pressure (s, n_node) /snapshots/liquid_pressure, Pa less that of the gas
 // That rows are as many as they must be, and indices in range, the schema has checked
 // when the artifact was opened. Optional datasets are asked for here.
@@ -54,8 +55,28 @@ static void read_pressures(const struct artifact *input, struct liquid_record *r
             input_name(input->path), needed[0]);
 }
 
+static void read_rings(const struct artifact *input, struct liquid_record *record)
+{
+    struct ring_record *rings = &record->rings;
+    if (!artifact_has_dataset(input, "/rings/throat") ||
+        !artifact_has_dataset(input, "/ring_changes/offset"))
+        die(STATUS_BAD_DATA,
+            "%s: /rings/throat: rings.left=drying needs it: dry with rings=isolated or "
+            "joined",
+            input_name(input->path));
+    rings->face = artifact_get(input, "/rings/face", &rings->n);
+    rings->separation = artifact_get(input, "/rings/separation", NULL);
+    rings->offset = artifact_get(input, "/rings/offset", NULL);
+    rings->throat = artifact_get(input, "/rings/throat", NULL);
+    rings->volume = artifact_get(input, "/rings/volume", NULL);
+    rings->changes.offset = artifact_get(input, "/ring_changes/offset", NULL);
+    rings->changes.throat = artifact_get(input, "/ring_changes/node", NULL);
+    rings->changes.throat_saturation =
+        artifact_get(input, "/ring_changes/saturation", NULL);
+}
+
 struct liquid_record read_record(const struct artifact *input,
-                                 const struct network *network, bool field)
+                                 const struct network *network, bool field, bool rings)
 {
     struct liquid_record record = {.drying = artifact_get_drying(input),
                                    .exposed = find_exposed(input, network)};
@@ -63,12 +84,19 @@ struct liquid_record read_record(const struct artifact *input,
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(input->path));
     if (field) read_pressures(input, &record);
+    if (rings) read_rings(input, &record);
     return record;
 }
 
 void free_record(struct liquid_record *record)
 {
     drying_record_free(&record->drying);
+    drying_record_free(&record->rings.changes);
+    free(record->rings.face);
+    free(record->rings.separation);
+    free(record->rings.offset);
+    free(record->rings.throat);
+    free(record->rings.volume);
     free(record->exposed);
     free(record->snapshot_time);
     free(record->pressure);

@@ -7,10 +7,11 @@
 #include "liquid_loads.h"
 
 // The record of INPUT, a drying of NETWORK, with the pressures of its snapshots if
-// FIELD, in SI. Ends the program with status 65 if they or the history are missing. The
-// caller frees it with free_record; INPUT may be closed before.
+// FIELD, and its rings if RINGS, in SI. Ends the program with status 65 if they or the
+// history are missing. The caller frees it with free_record; INPUT may be closed
+// before.
 struct liquid_record read_record(const struct artifact *input,
-                                 const struct network *network, bool field);
+                                 const struct network *network, bool field, bool rings);
 void free_record(struct liquid_record *record);
 
 #endif

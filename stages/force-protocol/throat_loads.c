@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The force on grain i is the sum over loads l and its patches k,
-//     force_i = scale * sum_(l, k) load_l(throat_k) pull_lk,   weight without scale,
+//     force_i = scale * (sum_(l, k) load_l(throat_k) pull_lk + sum of rings),
+// the weight without scale, rings as the drying left them (drying_rings.h),
 // always added in the same order, so that stepping gives the same bits as a sum from
 // scratch: a grain whose throats change is summed again as a whole, never corrected.
 //
@@ -18,6 +19,7 @@ void throat_loads_free(struct throat_loads *loads)
 {
     for (int l = 0; l < LOADS; l++)
         patches_free(&loads->patches[l]);
+    drying_rings_free(&loads->rings);
 }
 
 // FORCE plus the pulls of load L.
@@ -33,11 +35,13 @@ static struct vector pulled(const struct throat_loads *loads, enum load l,
 }
 
 static struct vector force_on(const struct throat_loads *loads, double (*load)[LOADS],
-                              int grain)
+                              const double *pull, int grain)
 {
     struct vector force = {0};
     for (int l = 0; l < LOAD_WEIGHT; l++)
         force = pulled(loads, (enum load)l, load, grain, force);
+    if (loads->rings.n > 0)
+        force = add(force, drying_rings_force(&loads->rings, pull, grain));
     return pulled(loads, LOAD_WEIGHT, load, grain, scale(loads->scale, force));
 }
 
@@ -46,6 +50,8 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
 {
     const struct network *network = liquid->network;
     double(*load)[LOADS] = allocate((size_t)network->n_throat, sizeof *load);
+    double *pull = NEW_ARRAY(double, loads->rings.n);
+    drying_rings_pull(&loads->rings, liquid, pull);
 #pragma omp parallel
     {
 #pragma omp for
@@ -53,9 +59,10 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
             liquid_loads_at(liquid, t, load[t]);
 #pragma omp for
         for (int i = 0; i < network->packing.n_particle; i++)
-            force[i] = force_on(loads, load, i);
+            force[i] = force_on(loads, load, pull, i);
     }
     free(load);
+    free(pull);
 }
 
 // --- step by step ------------------------------------------------------------------
@@ -80,6 +87,13 @@ static void list_grains(struct force_steps *steps, int n_throat)
     free(next);
 }
 
+static void list_grain(struct force_steps *steps, int grain)
+{
+    if (steps->listed[grain]) return;
+    steps->listed[grain] = true;
+    steps->changed[steps->n_changed++] = grain;
+}
+
 // Lists the grains of THROAT if any of its loads is another. Exact comparison: equal
 // loads give equal sums.
 static void update_throat(struct force_steps *steps, int throat)
@@ -91,12 +105,21 @@ static void update_throat(struct force_steps *steps, int throat)
         same &= load[l] == steps->load[throat][l];
     if (same) return;
     memcpy(steps->load[throat], load, sizeof load);
-    for (int k = steps->offset[throat]; k < steps->offset[throat + 1]; k++) {
-        const int grain = steps->grain[k];
-        if (steps->listed[grain]) continue;
-        steps->listed[grain] = true;
-        steps->changed[steps->n_changed++] = grain;
-    }
+    for (int k = steps->offset[throat]; k < steps->offset[throat + 1]; k++)
+        list_grain(steps, steps->grain[k]);
+}
+
+// All rings: each that pulls differently lists its two grains.
+static void update_rings(struct force_steps *steps)
+{
+    const struct drying_rings *rings = &steps->loads->rings;
+    double *former = steps->pull;
+    steps->pull = steps->former_pull;
+    steps->former_pull = former;
+    drying_rings_pull(rings, &steps->liquid, steps->pull);
+    for (int r = 0; r < rings->n; r++)
+        for (int end = 0; end < 2 && steps->pull[r] != former[r]; end++)
+            list_grain(steps, rings->grain[r][end]);
 }
 
 static void update(struct force_steps *steps)
@@ -110,10 +133,11 @@ static void update(struct force_steps *steps)
     else
         for (int64_t k = record->offset[step]; k < record->offset[step + 1]; k++)
             update_throat(steps, record->throat[k]);
+    if (steps->loads->rings.n > 0) update_rings(steps);
     for (int k = 0; k < steps->n_changed; k++) {
         const int grain = steps->changed[k];
         steps->former[k] = steps->force[grain];
-        steps->force[grain] = force_on(steps->loads, steps->load, grain);
+        steps->force[grain] = force_on(steps->loads, steps->load, steps->pull, grain);
         steps->listed[grain] = false;
     }
 }
@@ -130,6 +154,8 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
         .checks_all =
             law->rule != SUCTION_UNIFORM || loads->patches[LOAD_CONTACT_LINE].n > 0,
         .load = allocate((size_t)network->n_throat, sizeof *steps.load),
+        .pull = NEW_ARRAY(double, loads->rings.n),
+        .former_pull = NEW_ARRAY(double, loads->rings.n),
         .force = NEW_ARRAY(struct vector, n),
         .changed = NEW_ARRAY(int, n),
         .former = NEW_ARRAY(struct vector, n),
@@ -137,8 +163,9 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
     list_grains(&steps, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
         liquid_loads_at(&steps.liquid, t, steps.load[t]);
+    drying_rings_pull(&loads->rings, &steps.liquid, steps.pull);
     for (int i = 0; i < n; i++)
-        steps.force[i] = force_on(loads, steps.load, i);
+        steps.force[i] = force_on(loads, steps.load, steps.pull, i);
     return steps;
 }
 
@@ -160,6 +187,8 @@ void force_steps_free(struct force_steps *steps)
 {
     liquid_loads_free(&steps->liquid);
     free(steps->load);
+    free(steps->pull);
+    free(steps->former_pull);
     free(steps->force);
     free(steps->offset);
     free(steps->grain);

@@ -6,6 +6,7 @@
 #ifndef CRAQUELURE_THROAT_LOADS_H
 #define CRAQUELURE_THROAT_LOADS_H
 
+#include "drying_rings.h"
 #include "liquid_loads.h"
 #include "solid_angle_patches.h"
 
@@ -13,6 +14,7 @@
 // patches. Forces are multiplied by SCALE, except the weight.
 struct throat_loads {
     struct patches patches[LOADS];
+    struct drying_rings rings; // that the drying left; n = 0: none
     double scale;
     double balance_change; // of the suction's pulls (balance.h); 0: none
 };
@@ -29,10 +31,11 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
 struct force_steps {
     const struct throat_loads *loads;
     struct liquid_loads liquid;
-    bool checks_all;       // throats change that the drying does not list
-    double (*load)[LOADS]; // (n_throat)
-    struct vector *force;  // (n_particle) N
-    int *offset, *grain;   // (n_throat+1): grains that each throat acts on
+    bool checks_all;            // throats change that the drying does not list
+    double (*load)[LOADS];      // (n_throat)
+    double *pull, *former_pull; // (loads->rings.n) N, now and before
+    struct vector *force;       // (n_particle) N
+    int *offset, *grain;        // (n_throat+1): grains that each throat acts on
     int n_changed;
     int *changed;          // (n_changed) grains whose force the last move changed
     struct vector *former; // (n_changed) what it was before
