@@ -313,7 +313,7 @@ uninstall: ## remove what install put there
 
 # --- check ----------------------------------------------------------------------------
 
-BENCH_STUDIES := $(addprefix bench-,packings dem impact simulate simulate-speed walls bridge viscous replay dry network flow report scale)
+BENCH_STUDIES := $(addprefix bench-,packings dem impact simulate simulate-speed walls bridge viscous replay dry network flow report scale estimates studies)
 .PHONY: check check-c sanitize hard bench $(BENCH_STUDIES) bench-void speed-vs-error
 check: all $(C_TESTS) $(VOID) ## run all tests, the hard cases last
 	@tests/run $(C_TESTS) $(SCRIPT_TESTS)
@@ -352,6 +352,8 @@ bench-dry: ## time of drying and of invasion percolation against size (ten minut
 bench-network: ## measure time and memory of the tessellation, next to voro++
 bench-flow: ## measure time and memory of the flow, next to Yade
 bench-scale: ## each stage on irregular grains: time, growth, memory, files at three sizes (an hour)
+bench-estimates: ## what --estimate of each stage says, over what it takes (three minutes)
+bench-studies: ## what a study costs beside its stages, next to the shell and snakemake (two minutes)
 bench-report: ## the page of 50,000 grains in a headless Chromium: first picture, slider, turning
 bench-void: all $(VOID) ## networks of packings beside their void solved directly (a minute)
 	@tests/bench/void/compare $(BUILD)/void

@@ -58,16 +58,16 @@ def share(plan, stale, folder, part):
 
 def needs(plan, stale, folder, said):
     """Jobs, processors of each, MiB of a processor and minutes: as the user says, else by what was measured
-    of this study so far."""
-    expected, peak = cost.estimate(plan, stale, folder), cost.memory(folder)
+    of this study so far, or what its stages foresee."""
+    expected = cost.estimate(plan, stale, folder)
     cpus = said.get("cpus", 1)
-    seconds = expected[0] if expected else None
     most = max(1, min(MOST_TASKS, len(plan.runs)))
-    tasks = said.get("tasks") or max(1, min(most, math.ceil(seconds / cpus / 60 / LEAST_MINUTES)) if seconds else min(most, 2))
-    minutes = said.get("time") or (math.ceil(2 * seconds / cpus / tasks / 60) + 5 if seconds else 0)
-    if not minutes:
-        refuse(65, f"{plan.study.name}: none of its runs was timed yet: make some first (study make --seeds=1), or say --time=MINUTES")
-    memory = said.get("mem") or (math.ceil(1.5 * peak) + 100 if peak else 1000)
+    tasks = said.get("tasks") or max(1, min(most, math.ceil(expected.seconds / cpus / 60 / LEAST_MINUTES)))
+    if expected.silent and "time" not in said:
+        refuse(65, f"{plan.study.name}: {', '.join(sorted(expected.silent))}: nothing says what this takes: make some runs first "
+               "(study make --seeds=1), or say --time=MINUTES")
+    minutes = said.get("time") or math.ceil(2 * expected.seconds / cpus / tasks / 60) + 5
+    memory = said.get("mem") or math.ceil(1.5 * expected.mebibytes) + 100
     return min(tasks, most), cpus, memory, minutes
 
 

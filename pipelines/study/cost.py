@@ -1,9 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a study takes, by what was measured of its artifacts so far: seconds of each stage and bytes."""
+"""What a study takes: seconds of each stage, bytes and memory, as measured of its artifacts so far, else as
+the stages foresee it (--estimate)."""
+import functools
+import json
+import math
 import os
+import subprocess
+from dataclasses import dataclass, field
 
 import rules
+import stages
 from counts import three
+from plan import Artifact
+
+MOST_ASKED = 20  # artifacts of a kind that are asked for; others are taken for like them
+INSTANT = {"check", "crackstats"}  # that take no longer than a program takes to start
 
 
 def times(folder):
@@ -43,15 +54,83 @@ def sizes(plan, folder):
     return {kind: total / n for kind, (total, n) in sums.items()}
 
 
-def estimate(plan, stale, folder):
-    """Seconds of one core and bytes that the STALE artifacts take; None where one of their kind was never
-    made."""
-    known, large = times(folder), sizes(plan, folder)
-    labels = [rules.label(plan, path) for path in stale]
-    kinds = [plan.artifacts[path].kind for path in stale]
-    if any(label not in known for label in labels) or any(kind not in large for kind in kinds):
+# ---- what stages foresee ------------------------------------------------------------------
+
+@functools.cache
+def asked(stage, scene, sets, sizes, grains):
+    """What a STAGE says that it will take (--estimate), of SIZES or of the file GRAINS; None: it does not
+    say, or another program is in its place."""
+    if stages.own_program(stage) or "--estimate" not in stages.ask(stage, "--help"):
         return None
-    return sum(known[label] for label in labels), sum(large[kind] for kind in kinds)
+    words = [f"--estimate={sizes}" if sizes else "--estimate", "-p", scene, *(w for item in sets for w in ("--set", item)), *grains]
+    said = subprocess.run([stages.program(stage), *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    return None if said.returncode else json.loads(said.stdout)
+
+
+def foreseen(artifact):
+    """What making ARTIFACT takes, foreseen from the scene: sizes go from stage to stage as artifacts do."""
+    made = [each for each in artifact.inputs if isinstance(each, Artifact)]
+    before = foreseen(made[0]) if made else {}
+    if before is None:
+        return None
+    sizes = ",".join(f"{before[key]:.12g}" for key in ("grains", "loads") if key in before)
+    return asked(artifact.stage(), artifact.scene, artifact.sets, sizes, () if made else artifact.inputs)
+
+
+def foresee(plan, paths):
+    """Mean seconds, least and most, MiB of the PATHS, of which some are asked; and stages that do not say."""
+    some = paths[::math.ceil(len(paths) / MOST_ASKED)]
+    parts = [(part, foreseen(part)) for path in some for part in plan.parts[path]]
+    said = [each for _, each in parts if each]
+    seconds = [sum(each["seconds"] for each in said), *(sum(each.get("range", [each["seconds"]] * 2)[k] for each in said) for k in (0, 1))]
+    silent = {part.stage() for part, each in parts if not each} - INSTANT
+    return [x / len(some) for x in seconds], max((each["mebibytes"] for each in said), default=0), silent
+
+
+@dataclass
+class Estimate:
+    """Of one core: SECONDS, from LEAST to MOST; BYTES of disk, None: not known; MiB of the largest program.
+    SILENT stages are left out."""
+    seconds: float = 0
+    least: float = 0
+    most: float = 0
+    bytes: object = 0
+    mebibytes: float = 0
+    silent: set = field(default_factory=set)
+    measured: bool = True
+
+
+def estimate(plan, stale, folder):
+    """What the STALE artifacts take: by what was measured of their stages in this study, else as these foresee."""
+    known, large = times(folder), sizes(plan, folder)
+    total, of_label = Estimate(mebibytes=memory(folder)), {}
+    for path in stale:
+        of_label.setdefault(rules.label(plan, path), []).append(path)
+    for label, paths in of_label.items():
+        if label in known:
+            each = [known[label]] * 3
+        else:
+            each, mebibytes, silent = foresee(plan, paths)
+            total.measured = False
+            total.mebibytes = max(total.mebibytes, mebibytes)
+            total.silent |= silent
+        total.seconds, total.least, total.most = (sum_ + len(paths) * x for sum_, x in
+                                                  zip((total.seconds, total.least, total.most), each))
+    kinds = [plan.artifacts[path].kind for path in stale]
+    total.bytes = sum(large[kind] for kind in kinds) if all(kind in large for kind in kinds) else None
+    return total
+
+
+def words(expected):
+    """For people."""
+    text = f"about {duration(expected.seconds)} of one core"
+    if expected.most > 1.01 * expected.least:
+        text += f" ({duration(expected.least)} to {duration(expected.most)})"
+    if not expected.measured:
+        text += ", as stages foresee it"
+    if expected.silent:
+        text += f", without {', '.join(sorted(expected.silent))}"
+    return text
 
 
 def duration(seconds):

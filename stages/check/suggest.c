@@ -16,6 +16,8 @@
 // and without the weight of the liquid.
 #include "suggest.h"
 
+#include "parameters/estimate.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,14 +58,6 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
                                  .body = weight / (side.x * side.y * suction)};
 }
 
-// Two digits: more would say more than is known.
-static json_t *rough(double value)
-{
-    char text[24];
-    snprintf(text, sizeof text, "%.1e", value);
-    return json_real(strtod(text, NULL));
-}
-
 json_t *suggest(const struct material *material, const struct packing *packing,
                 const struct packing_facts *facts)
 {
@@ -95,33 +89,27 @@ json_t *suggest(const struct material *material, const struct packing *packing,
 
 // ---- cost ---------------------------------------------------------------------------
 
-// Seconds of one core and megabytes of A n^B for n thousand grains: between 1000
-// settled grains with the scene of docs/your-grains.md and the 100,000 of
-// tests/bench/scale; equilibria at 1000 and 4000 grains without friction, and at 200
-// and 300 with friction and some twenty cracks. Never less memory than at 1000.
-static const struct rate {
-    const char *stage;
-    double seconds, seconds_power, megabytes, megabytes_power;
-} rates[] = {{"tessellate", 0.1, 0.8, 15, 0.5},
-             {"merge-nodes", 0.05, 0.7, 15, 0.7},
-             {"dry", 0.6, 1.5, 40, 0.5},
-             {"force-protocol (100 loads)", 1, 0.8, 63, 0.6},
-             {"dem-replay (100 loads of 100 cycles)", 1.5, 0.9, 21, 1},
-             {"dem-replay (100 equilibria, friction=0)", 4, 3, 61, 1.3},
-             {"dem-replay (100 equilibria)", 400, 3, 61, 1.3}};
+static void add_cost(json_t *list, const char *stage, struct cost cost)
+{
+    json_array_append_new(list, json_pack("{s:s,s:o,s:o}", "stage", stage, "seconds",
+                                          rough(cost.seconds), "megabytes",
+                                          rough(cost.mebibytes * 1.048576)));
+}
 
 json_t *expected_cost(int n)
 {
+    struct body_size body = body_of_grains(n);
+    body.changes = recorded_changes(&body, NAN);
+    body.loads = 100;
     json_t *list = json_array();
-    for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
-        const struct rate *rate = &rates[k];
-        const double thousands = n / 1000.0;
-        const double megabytes =
-            rate->megabytes * pow(fmax(thousands, 1), rate->megabytes_power);
-        json_array_append_new(
-            list, json_pack("{s:s,s:o,s:o}", "stage", rate->stage, "seconds",
-                            rough(rate->seconds * pow(thousands, rate->seconds_power)),
-                            "megabytes", rough(megabytes)));
-    }
+    add_cost(list, "tessellate", cost_of_tessellation(n));
+    add_cost(list, "merge-nodes", cost_of_merging(&body));
+    add_cost(list, "dry", cost_of_drying(&body, false, false, true));
+    add_cost(list, "force-protocol (100 loads)", cost_of_forces(&body));
+    add_cost(list, "dem-replay (100 loads of 100 cycles)",
+             cost_of_cycles(&body, 0, 100, 100));
+    add_cost(list, "dem-replay (100 equilibria, friction=0)",
+             cost_of_equilibria(&body, false));
+    add_cost(list, "dem-replay (100 equilibria)", cost_of_equilibria(&body, true));
     return list;
 }

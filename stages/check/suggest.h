@@ -38,8 +38,8 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
 json_t *suggest(const struct material *material, const struct packing *packing,
                 const struct packing_facts *facts);
 
-// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains: powers of N
-// through measured runs, on one core. The caller owns it.
+// [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains on one core, by
+// costs/costs.h: what --estimate of these stages says. The caller owns it.
 json_t *expected_cost(int n);
 
 #endif

@@ -20,11 +20,13 @@
 // was unstable or, if so wanted, did not come to rest. Bad data found in the replay are
 // those of a state that was kept, so messages then name that file.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "geometry/support.h"
 #include "parameters.h"
+#include "parameters/estimate.h"
 #include "replay_engine.h"
 #include "take_weight.h"
 #include "write_response.h"
@@ -42,6 +44,7 @@ static const struct stage stage = {
     .writes = "response",
     .most_inputs = 2,
     .parameters = replay_table,
+    .estimates = true,
     .notes =
         "A second input is the response of an earlier replay with keep_state, from "
         "which this one continues: with the positions of its grains and the bonds that "
@@ -429,12 +432,39 @@ static void choose_bridges(struct replay_parameters *parameters,
         report("bridges: %s", difference);
 }
 
+// Only the number of grains and whether there are bonds decide on the engine; the input
+// of a body that only shrinks has no loads.
+static int estimate(const struct invocation *invocation,
+                    struct replay_parameters *parameters)
+{
+    struct replay_settings *settings = &parameters->settings;
+    struct body_size body = input_size(invocation, 0);
+    if (!(body.loads > 0) && settings->shrinkage.strain > 0)
+        body.loads = (double)parameters->shrinkage_steps;
+    if (!(body.loads > 0))
+        die(STATUS_USAGE, "--estimate: name forces as input, or a number of grains and "
+                          "one of loads, as --estimate=1000,550");
+    choose_engine(parameters,
+                  &(struct packing){.n_particle = (int)body.grains, .n_bond = 1},
+                  settings);
+    const double cycles = (double)settings->cycles;
+    const struct cost cost =
+        settings->engine == ENGINE_QUASI_STATIC
+            ? cost_of_equilibria(&body, settings->material.friction > 0)
+            : cost_of_cycles(
+                  &body, (double)settings->ramp, cycles,
+                  isnan(settings->tolerance) ? cycles : (double)settings->most_cycles);
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct replay_parameters parameters = {0};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     struct replay_settings *settings = &parameters.settings;
     complete_settings(&parameters, invocation.threads);
+    if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     choose_bridges(&parameters, input, invocation.quiet);
     struct packing packing = artifact_get_packing(input);

@@ -6,6 +6,7 @@
 // in by these, which the drying counts as empty from the start; read the saturations to
 // start from; find the checkpoint to go on from; dry (drying.h); write.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "artifacts/checkpoint.h"
 #include "artifacts/liquid.h"
 #include "basics/memory.h"
@@ -16,6 +17,7 @@
 #include "dry/run/initial_saturation.h"
 #include "network/enclosed.h"
 #include "parameters.h"
+#include "parameters/estimate.h"
 #include "write_drying.h"
 
 #include <math.h>
@@ -33,6 +35,7 @@ static const struct stage stage = {
     .writes = "drying",
     .most_inputs = 1,
     .parameters = dry_table,
+    .estimates = true,
     .checkpoints = true};
 
 // Saturation falls during the drying, so a rising list could not be met in its order.
@@ -196,12 +199,26 @@ static void note_fluids(const struct dry_parameters *parameters,
         report("%s", text);
 }
 
+static int estimate(const struct invocation *invocation,
+                    const struct dry_parameters *parameters)
+{
+    const struct drying_conditions *conditions = &parameters->conditions;
+    struct body_size body = input_size(invocation, parameters->open_walls);
+    body.changes = recorded_changes(&body, conditions->step_interval);
+    const struct cost cost =
+        cost_of_drying(&body, parameters->liquid == LIQUID_VISCOUS, conditions->kelvin,
+                       !(conditions->vapour_tolerance > 0));
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct dry_parameters parameters = {.given = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     omp_set_num_threads(invocation.threads);
     check_snapshots(&parameters);
+    if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 

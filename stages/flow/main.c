@@ -18,9 +18,11 @@
 // where they are. From find_cells to write all but permeabilities is in units of length
 // (grains.h) and for a viscosity of 1, with pressures in Pa.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "conditions.h"
+#include "parameters/estimate.h"
 #include "pore_volume_rate.h"
 #include "small_grains.h"
 #include "write_flow.h"
@@ -124,6 +126,7 @@ static const struct stage stage = {
     .writes = "flow",
     .most_inputs = 1,
     .parameters = table,
+    .estimates = true,
     .notes = "Pores are the cells of the regular triangulation of the grains, throats "
              "its facets. With write=forces the output is a forces artifact."};
 
@@ -344,10 +347,20 @@ static void write(const struct computation *computation,
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
+static int estimate(const struct invocation *invocation,
+                    const struct flow_parameters *parameters)
+{
+    const struct body_size body = input_size(invocation, 0);
+    const struct cost cost = cost_of_flow(body.grains, parameters->tensor ? 4 : 1);
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct flow_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
     struct computation flow = {.packing = artifact_get_packing(input)};
 

@@ -25,6 +25,7 @@
 // takes the most memory, is over. Auxiliary grains bound cells and must be there until
 // all forces are summed. The size of the result is checked before it is allocated.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "artifacts/liquid.h"
 #include "auxiliary.h"
 #include "balance.h"
@@ -32,11 +33,13 @@
 #include "basics/status.h"
 #include "liquid_weight.h"
 #include "network/checks.h"
+#include "parameters/estimate.h"
 #include "pendular_rings.h"
 #include "protocol.h"
 #include "read_record.h"
 #include "times.h"
 
+#include <math.h>
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -118,7 +121,8 @@ static const struct stage stage = {
     .reads = "drying",
     .writes = "forces",
     .most_inputs = 1,
-    .parameters = table};
+    .parameters = table,
+    .estimates = true};
 
 // Takes from the drying each property of the liquid that was not given. DIFFERENCE says
 // which given ones are not those of the drying. Only the tension has no default: an
@@ -410,11 +414,25 @@ static void write_forces(const struct protocol *protocol, const struct process *
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
+// Times by largest_change are found only from the drying: as many as uniform ones are
+// expected.
+static int estimate(const struct invocation *invocation,
+                    const struct force_parameters *parameters)
+{
+    struct body_size body = input_size(invocation, 0);
+    if (!(body.changes > 0)) body.changes = recorded_changes(&body, NAN);
+    body.loads = (double)parameters->steps;
+    const struct cost cost = cost_of_forces(&body);
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct force_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     omp_set_num_threads(invocation.threads);
+    if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
     char difference[300], model[1400];

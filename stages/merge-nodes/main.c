@@ -13,11 +13,13 @@
 // or a share of the throats, which is the only one with an upper limit (1) and is
 // checked here.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "artifacts/document.h"
 #include "artifacts/write_network.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "merge.h"
+#include "parameters/estimate.h"
 #include "report.h"
 
 #include <stdio.h>
@@ -56,6 +58,7 @@ static const struct stage stage = {
     .writes = "network",
     .most_inputs = 1,
     .parameters = table,
+    .estimates = true,
     .reports = "coordination, lengths and radii before and after, as JSON"};
 
 // Cylinders become volumes, m3: then merging passes them on, and their sum stays.
@@ -102,6 +105,14 @@ static void check_images(const struct network *network, const char *path)
             input_name(path), FARTHEST_IMAGE);
 }
 
+static int estimate(const struct invocation *invocation)
+{
+    const struct body_size body = input_size(invocation, 0);
+    const struct cost cost = cost_of_merging(&body);
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct merge_parameters parameters;
@@ -111,6 +122,7 @@ int main(int argc, char **argv)
             "merge-nodes.threshold: must be from 0 to 1 where it is a "
             "fraction, got %g",
             parameters.threshold);
+    if (invocation.estimates) return estimate(&invocation);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
     struct network network = artifact_get_periodic_network(input);
 

@@ -25,6 +25,7 @@
 #include "methods.h"
 #include "pack.h"
 #include "parameters.h"
+#include "parameters/estimate.h"
 #include "report.h"
 
 #include <stdlib.h>
@@ -37,6 +38,7 @@ static const struct stage stage = {
     .writes = "packing",
     .most_inputs = 1,
     .parameters = pack_table,
+    .estimates = true,
     .notes =
         "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
         "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
@@ -225,6 +227,36 @@ static void begin_checkpoint(struct checkpoint *checkpoint,
     checkpoint_begin(checkpoint, invocation, inputs);
 }
 
+static enum moving moving_of(int method)
+{
+    switch (method) {
+    case METHOD_DEPOSITION:
+        return MOVING_BY_GRAVITY;
+    case METHOD_RADIUS_EXPANSION:
+    case METHOD_DOMAIN_CONTRACTION:
+        return MOVING_BY_COMPRESSION;
+    case METHOD_EXPLOSIVE_REPULSION:
+        return MOVING_BY_OVERLAPS;
+    case METHOD_SOFT_SPHERES:
+        return MOVING_BY_RELAXATION;
+    default:
+        return MOVING_NOT;
+    }
+}
+
+// GRAINS: as many as were read or said; 0: as the parameters will make.
+static int estimate(const struct pack_parameters *parameters, double grains)
+{
+    struct reason reason;
+    enum status status = STATUS_OK;
+    if (!(grains > 0)) status = expected_count(parameters, &grains, &reason);
+    if (status) die(status, "%s", reason.text);
+    const struct body_size body = body_of_grains(grains);
+    const struct cost cost = cost_of_packing(grains, moving_of(parameters->method));
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct pack_parameters parameters;
@@ -233,7 +265,10 @@ int main(int argc, char **argv)
     struct domain domain;
     struct packing packing = {0};
     const bool given = takes_input(&invocation, parameters.method);
-    if (given) packing = make_import(&invocation, &parameters, inputs, &domain);
+    if (given && !(invocation.grains > 0))
+        packing = make_import(&invocation, &parameters, inputs, &domain);
+    if (invocation.estimates)
+        return estimate(&parameters, given ? packing.n_particle : invocation.grains);
 
     struct checkpoint checkpoint;
     begin_checkpoint(&checkpoint, &invocation, inputs, parameters.method);

@@ -149,6 +149,13 @@ static enum status place_drawn(const struct pack_parameters *parameters,
     }
 }
 
+static gsl_rng *random_of(const struct pack_parameters *parameters)
+{
+    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
+    gsl_rng_set(random, (unsigned long)parameters->seed);
+    return random;
+}
+
 // The largest radius first: the domain must have room for it.
 static enum status make_drawn(const struct pack_parameters *parameters,
                               struct progress *progress, struct domain *domain,
@@ -160,8 +167,7 @@ static enum status make_drawn(const struct pack_parameters *parameters,
         status = domain_init(&parameters->domain, dimensions_of(parameters),
                              sizes.largest, domain, reason);
     if (status) return status;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    gsl_rng_set(random, (unsigned long)parameters->seed);
+    gsl_rng *random = random_of(parameters);
     status = place_drawn(parameters, domain, &sizes, random, progress, packing, reason);
     gsl_rng_free(random);
     return status;
@@ -183,6 +189,7 @@ static double expected_porosity(const struct pack_parameters *parameters)
     if (parameters->method == METHOD_DEPOSITION)
         return parameters->dimensions == 2 ? 0.2 : 0.42;
     if (parameters->method == METHOD_SOFT_SPHERES) return 0.4;
+    if (parameters->method == METHOD_RANDOM_SEQUENTIAL) return 0.62;
     return parameters->dimensions == 2 ? 0.17 : 0.37;
 }
 
@@ -271,6 +278,21 @@ static enum status count_grains(const struct pack_parameters *parameters,
                   "pack.upper: must hold at most 1e8 grains of this size");
 }
 
+// Sizes for the box, the box for the count: each needs the one before.
+static enum status prepare(const struct pack_parameters *parameters,
+                           const gsl_rng *random, struct sizes *sizes,
+                           struct domain *domain, int *count, struct reason *reason)
+{
+    struct domain_parameters box;
+    enum status status = sizes_prepare(&parameters->sizes, sizes, reason);
+    if (!status) status = give_box(parameters, sizes, random, &box, reason);
+    if (!status)
+        status = domain_init(&box, dimensions_of(parameters), sizes->largest, domain,
+                             reason);
+    return status ? status
+                  : count_grains(parameters, domain, sizes, random, count, reason);
+}
+
 static enum status move_grains_there(const struct making *making,
                                      const struct pack_parameters *parameters,
                                      int count, struct reason *reason)
@@ -313,17 +335,11 @@ static enum status make_soft(const struct pack_parameters *parameters,
                              struct packing *packing, struct reason *reason)
 {
     struct sizes sizes;
-    struct domain_parameters box;
     enum status status = check_soft(parameters, reason);
-    if (!status) status = sizes_prepare(&parameters->sizes, &sizes, reason);
     if (status) return status;
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    gsl_rng_set(random, (unsigned long)parameters->seed);
+    gsl_rng *random = random_of(parameters);
     int count = 0;
-    status = give_box(parameters, &sizes, random, &box, reason);
-    if (!status) status = domain_init(&box, 3, sizes.largest, domain, reason);
-    if (!status)
-        status = count_grains(parameters, domain, &sizes, random, &count, reason);
+    status = prepare(parameters, random, &sizes, domain, &count, reason);
     if (!status)
         status = soft_spheres(domain, &sizes, count, random, progress, packing, reason);
     gsl_rng_free(random);
@@ -342,8 +358,7 @@ static struct sizes sizes_of(const struct packing *packing)
     return sizes;
 }
 
-// In this order because each needs the one before: sizes for the box, the box for the
-// count, all of them for the checks.
+// All of it first: sizes, box and count are needed for the checks.
 static enum status make_moved(const struct pack_parameters *parameters, bool given,
                               struct progress *progress, struct domain *domain,
                               struct packing *packing, struct reached *reached,
@@ -351,11 +366,8 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
 {
     struct sizes sizes;
     enum status status = check_target(parameters, reason);
-    if (!status && !given) status = sizes_prepare(&parameters->sizes, &sizes, reason);
     if (status) return status;
-    if (given) sizes = sizes_of(packing);
-    gsl_rng *random = gsl_rng_alloc(gsl_rng_mt19937);
-    gsl_rng_set(random, (unsigned long)parameters->seed);
+    gsl_rng *random = random_of(parameters);
     const struct making making = {.how = &parameters->dynamics,
                                   .sizes = &sizes,
                                   .random = random,
@@ -363,16 +375,11 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
                                   .domain = domain,
                                   .packing = packing,
                                   .reached = reached};
-    struct domain_parameters box;
     int count = 0;
-    if (!given) {
-        status = give_box(parameters, &sizes, random, &box, reason);
-        if (!status)
-            status = domain_init(&box, dimensions_of(parameters), sizes.largest, domain,
-                                 reason);
-        if (!status)
-            status = count_grains(parameters, domain, &sizes, random, &count, reason);
-    }
+    if (given)
+        sizes = sizes_of(packing);
+    else
+        status = prepare(parameters, random, &sizes, domain, &count, reason);
     if (!status && domain->dimensions == 2) { // a plane does not repeat across itself
         domain->periodic[1] = false;
         packing->periodic[1] = false;
@@ -404,4 +411,37 @@ enum status make_grains(const struct pack_parameters *parameters, bool given,
     default:
         return make_lattice(parameters, domain, packing, reason);
     }
+}
+
+// ---- how many -----------------------------------------------------------------------
+
+static enum status lattice_count(const struct pack_parameters *parameters,
+                                 double *grains, struct reason *reason)
+{
+    const enum lattice lattice = lattice_of(parameters);
+    struct domain domain;
+    int64_t counts[3];
+    const enum status status =
+        lattice_domain(parameters, lattice, counts, &domain, reason);
+    if (status) return status;
+    const struct vector edge = subtract(domain.upper, domain.lower);
+    *grains = (double)lattice_grains(lattice, counts) * domain_volume(&domain) /
+              (edge.x * edge.y * edge.z);
+    return STATUS_OK;
+}
+
+enum status expected_count(const struct pack_parameters *parameters, double *grains,
+                           struct reason *reason)
+{
+    if (parameters->method < METHOD_POISSON)
+        return lattice_count(parameters, grains, reason);
+    struct sizes sizes;
+    struct domain domain;
+    int count = 0;
+    gsl_rng *random = random_of(parameters);
+    const enum status status =
+        prepare(parameters, random, &sizes, &domain, &count, reason);
+    gsl_rng_free(random);
+    *grains = count;
+    return status;
 }

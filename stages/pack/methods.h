@@ -20,6 +20,12 @@ enum status make_grains(const struct pack_parameters *parameters, bool given,
                         struct packing *packing, struct reached *reached,
                         struct reason *reason);
 
+// The grains that it will make, before any is placed: exactly where they are counted by
+// the parameters, else as many as fill the domain at the porosity to expect.
+// STATUS_BAD_DATA as make_grains.
+enum status expected_count(const struct pack_parameters *parameters, double *grains,
+                           struct reason *reason);
+
 // STATUS_BAD_DATA, naming the key, for targets that moving grains cannot reach
 // [check_moved.c]. SIZES are those to be drawn or, if GIVEN, of the grains in INPUT;
 // DOMAIN is where they will move.

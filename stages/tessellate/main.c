@@ -18,10 +18,12 @@
 // What refuses a packing (65) names the dataset and row. `model` in the provenance says
 // which diagram, radii, volumes and conductances the network has.
 #include "artifacts/artifact.h"
+#include "artifacts/body_size.h"
 #include "artifacts/write_network.h"
 #include "basics/status.h"
 #include "diagram.h"
 #include "network/void_volume.h"
+#include "parameters/estimate.h"
 
 #include <omp.h>
 #include <stdio.h>
@@ -86,7 +88,8 @@ static const struct stage stage = {
     .reads = "packing",
     .writes = "network",
     .most_inputs = 1,
-    .parameters = table};
+    .parameters = table,
+    .estimates = true};
 
 // Gives volumes in m3 that sum to the void. In a Voronoi diagram larger grains stick
 // out into the void of their neighbours' cells.
@@ -132,10 +135,19 @@ static const char *const radius_rule[] = {
     [CLEARANCE_LINE] = "the infinite line through it to the grains beside it [K 3.7]",
     [CLEARANCE_BESIDE] = "the throat to the grains beside it"};
 
+static int estimate(const struct invocation *invocation)
+{
+    const struct body_size body = input_size(invocation, 0);
+    const struct cost cost = cost_of_tessellation(body.grains);
+    print_estimate(&cost, &body);
+    return STATUS_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct tessellate_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+    if (invocation.estimates) return estimate(&invocation);
     omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
     struct packing packing = artifact_get_packing(input);

@@ -45,9 +45,10 @@ enum {
     KEY_PARAMETERS,
     KEY_REPORT,
     KEY_CHECKPOINT,
-    KEY_EVERY
+    KEY_EVERY,
+    KEY_ESTIMATE
 };
-enum { MOST_OPTIONS = 16 };
+enum { MOST_OPTIONS = 17 };
 
 static const struct argp_option options[] = {
     {"params", 'p', "FILE", 0, "Parameters: a scene, or just this stage's section", 0},
@@ -98,6 +99,18 @@ static enum progress_mode parse_progress(const char *text)
     die(STATUS_USAGE, "--progress: must be auto, always or never, got %s", text);
 }
 
+// GRAINS or GRAINS,LOADS; nothing: the input says it.
+static void parse_sizes(struct invocation *invocation, const char *text)
+{
+    invocation->estimates = true;
+    if (!text) return;
+    char grains[32];
+    const char *comma = strchrnul(text, ',');
+    snprintf(grains, sizeof grains, "%.*s", (int)(comma - text), text);
+    invocation->grains = number_of_option("--estimate", grains, 1, 1e9);
+    if (*comma) invocation->loads = number_of_option("--estimate", comma + 1, 1, 1e9);
+}
+
 // Only the pointer is kept: argv outlives the invocation.
 static void add_input(struct command_line *line, const char *name)
 {
@@ -138,6 +151,9 @@ static error_t parse_option(int key, char *argument, struct argp_state *state)
     case KEY_EVERY:
         invocation->checkpoint_every =
             number_of_option("--checkpoint-every", argument, 0, 1e9);
+        return 0;
+    case KEY_ESTIMATE:
+        parse_sizes(invocation, argument);
         return 0;
     case KEY_THREADS:
         invocation->threads = (int)whole_of_option("--threads", argument, 1, 1024);
@@ -353,30 +369,36 @@ static void fill(const struct command_line *line, void *parameters)
 
 // END is the row of zeros, which moves one down.
 static struct argp_option *add_option(struct argp_option *end, const char *name,
-                                      int key, const char *argument, const char *text)
+                                      int key, const char *argument, int flags,
+                                      const char *text)
 {
     end[1] = *end;
-    *end = (struct argp_option){name, key, argument, 0, text, 0};
+    *end = (struct argp_option){name, key, argument, flags, text, 0};
     return end + 1;
 }
 
 // The options of every stage, and its own.
 static void list_options(const struct stage *stage, struct argp_option *list)
 {
-    static_assert(sizeof options <= (MOST_OPTIONS - 3) * sizeof *options,
-                  "room for three more");
+    static_assert(sizeof options <= (MOST_OPTIONS - 4) * sizeof *options,
+                  "room for four more");
     memcpy(list, options, sizeof options);
     struct argp_option *end = list;
     while (end->name)
         end++;
     if (stage->reports)
-        end = add_option(end, "report", KEY_REPORT, "FILE", stage->reports);
+        end = add_option(end, "report", KEY_REPORT, "FILE", 0, stage->reports);
+    if (stage->estimates)
+        end = add_option(end, "estimate", KEY_ESTIMATE, "GRAINS", OPTION_ARG_OPTIONAL,
+                         "Print what the run will take, as JSON, and do not run. "
+                         "Without INPUT: for so many irregular grains, and as "
+                         "GRAINS,LOADS under so many loads");
     if (!stage->checkpoints) return;
-    end = add_option(end, "checkpoint", KEY_CHECKPOINT, "FILE",
+    end = add_option(end, "checkpoint", KEY_CHECKPOINT, "FILE", 0,
                      "Keep the state there regularly, and when stopped by SIGTERM, "
                      "SIGINT or SIGHUP; resume from it if it exists; remove it at the "
                      "end. Results do not depend on it");
-    add_option(end, "checkpoint-every", KEY_EVERY, "SECONDS",
+    add_option(end, "checkpoint-every", KEY_EVERY, "SECONDS", 0,
                "Time between two checkpoints [600]");
 }
 
@@ -440,7 +462,8 @@ static void check_checkpoint(const struct invocation *invocation)
 
 // Without an input standard input is read, if the stage takes any. A terminal is
 // refused as output but by stages that tell people: an artifact is not text. Outputs
-// are looked at last, when it is clear that there is something to run.
+// are looked at last, when it is clear that there is something to run; an estimate has
+// none.
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
@@ -464,6 +487,7 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         putchar('\n');
         exit(STATUS_OK);
     }
+    if (invocation.estimates) return invocation;
     if (!strcmp(invocation.output, "-") && !invocation.tells && isatty(STDOUT_FILENO))
         die(STATUS_USAGE,
             "standard output is a terminal: name a file with -o, or pipe it");

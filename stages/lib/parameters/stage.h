@@ -24,6 +24,7 @@ struct stage {
     const char *notes;                  // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
+    bool estimates;      // whether it says what a run will take: --estimate
     bool tells;          // without -o it tells people, in text, what it found
     bool writes_page;    // for people, which has no schema
     bool transcribes;    // it writes what it read: what is wrong is wrong in the input
@@ -39,6 +40,8 @@ struct invocation {
     const char *checkpoint;  // of --checkpoint; NULL: not asked for
     double checkpoint_every; // s
     bool resumed;            // the run goes on from that checkpoint
+    bool estimates;          // only the cost is asked for
+    double grains, loads;    // of --estimate=GRAINS,LOADS; 0: not given
     int threads;
     bool tells; // in text, on standard output, for there is no -o
     bool quiet;

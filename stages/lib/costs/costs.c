@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For n grains, N throats, m nodes of the open side, c rows of recorded changes, L
+// loads, seconds and MiB beyond what starting a program takes:
+//
+//     placing          a n
+//     moving           a n^(4/3)      cycles grow with the height, n^(1/3)
+//     tessellation     a n
+//     merging          a N
+//     drying           N (a + b m + d m^2) + e c       d m^2: products of links, of
+//                      floats with a tolerance; viscous: N^2
+//     forces           a N + e c + f n L
+//     cycles           g n (ramp + L cycles)
+//     equilibria       a n^2 L
+//     flow             a n, and as much for each system but the first
+//
+// with the constants below: `make bench-estimates` measures what they foresee. They are
+// of an AMD EPYC with AVX2, one core, with other programs beside; the growth of the
+// drying is explained in docs/speed.md. Of moving, cycles until rest and equilibria
+// only the order is known before: LEAST and MOST enclose what was measured.
+#include "costs.h"
+
+#include <math.h>
+
+static const double START_SECONDS = 0.05, START_MEBIBYTES = 10.5;
+static const double MEBIBYTE = 1048576;
+
+// Events are recorded one by one up to so many throats, above in a thousand steps.
+static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
+
+static struct cost cost_of(double seconds, double mebibytes)
+{
+    const double all = START_SECONDS + seconds;
+    return (struct cost){all, all, all, START_MEBIBYTES + mebibytes};
+}
+
+// Known to a factor of LESS below and MORE above.
+static struct cost within(double seconds, double less, double more, double mebibytes)
+{
+    struct cost cost = cost_of(seconds, mebibytes);
+    cost.least = START_SECONDS + seconds / less;
+    cost.most = START_SECONDS + seconds * more;
+    return cost;
+}
+
+struct body_size body_of_grains(double grains)
+{
+    return (struct body_size){.grains = grains,
+                              .unmerged = 12 * grains,
+                              .throats = 11 * grains,
+                              .face = 1.8 * pow(grains, 2.0 / 3)};
+}
+
+double recorded_changes(const struct body_size *body, double interval)
+{
+    if (isnan(interval)) interval = body->throats > MOST_BY_EVENTS ? COARSE_STEPS : 0;
+    const double steps =
+        interval > 0 ? fmin(1 / interval, body->throats) : body->throats;
+    return 1.2 * body->face * steps;
+}
+
+struct cost cost_of_packing(double grains, enum moving moving)
+{
+    static const double constant[] = {[MOVING_BY_GRAVITY] = 1.5e-4,
+                                      [MOVING_BY_COMPRESSION] = 7e-5,
+                                      [MOVING_BY_OVERLAPS] = 1.2e-4,
+                                      [MOVING_BY_RELAXATION] = 3.5e-5};
+    if (moving == MOVING_NOT) return cost_of(1e-5 * grains, 5e-5 * grains);
+    return within(constant[moving] * pow(grains, 4.0 / 3), 3, 3,
+                  (moving == MOVING_BY_RELAXATION ? 1e-4 : 0.0025) * grains);
+}
+
+struct cost cost_of_tessellation(double grains)
+{
+    return cost_of(8.5e-5 * grains, 0.0025 * grains);
+}
+
+struct cost cost_of_merging(const struct body_size *body)
+{
+    return cost_of(3e-6 * body->unmerged, 4e-4 * body->unmerged);
+}
+
+struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
+                           bool exact)
+{
+    const double throats = body->throats, front = 2 * body->face;
+    const double links = front * front * (exact ? 5e-12 : 2.5e-12);
+    double seconds = throats * (2e-6 + 9e-9 * front + links) + 1.2e-7 * body->changes;
+    if (flows) seconds += 1.4e-9 * pow(throats, 2.4);
+    if (kelvin) seconds += 2.4e-10 * pow(throats, 2.65);
+    const double mebibytes =
+        5.5e-4 * throats +
+        (14 * body->changes + front * front * (exact ? 4 : 2)) / MEBIBYTE;
+    return kelvin ? within(seconds, 5, 100, mebibytes) : cost_of(seconds, mebibytes);
+}
+
+struct cost cost_of_forces(const struct body_size *body)
+{
+    const double forces = body->grains * body->loads;
+    return cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
+                   7.5e-4 * body->throats +
+                       (24 * body->changes + 24 * forces) / MEBIBYTE);
+}
+
+static double replay_mebibytes(const struct body_size *body)
+{
+    return 0.004 * body->grains + 2 * 24 * body->grains * body->loads / MEBIBYTE;
+}
+
+struct cost cost_of_cycles(const struct body_size *body, double ramp, double cycles,
+                           double most)
+{
+    const double step = 5e-8 * body->grains, mebibytes = replay_mebibytes(body);
+    const double least = step * (ramp + body->loads * cycles);
+    if (!(most > cycles)) return cost_of(least, mebibytes);
+    const double middle = step * (ramp + body->loads * sqrt(cycles * most));
+    return within(middle, middle / least, step * (ramp + body->loads * most) / middle,
+                  mebibytes);
+}
+
+struct cost cost_of_equilibria(const struct body_size *body, bool friction)
+{
+    const double work = body->grains * body->grains * body->loads;
+    return within((friction ? 3e-6 : 1e-7) * work, 30, 5,
+                  replay_mebibytes(body) + 0.1 * body->grains);
+}
+
+struct cost cost_of_flow(double grains, int systems)
+{
+    return cost_of(5e-5 * grains * (0.7 + 0.3 * systems), 0.0045 * grains);
+}

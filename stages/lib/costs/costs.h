@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stage takes: seconds of one core and MiB, foreseen from the sizes of what it
+// works on and from constants that were measured on one machine (costs.c). Pure
+// functions.
+#ifndef CRAQUELURE_COSTS_H
+#define CRAQUELURE_COSTS_H
+
+#include <stdbool.h>
+
+// Sizes of a body. Of a cube of irregular grains with their own pore network all follow
+// from the number of grains (body_of_grains); an artifact knows better.
+struct body_size {
+    double grains;
+    double unmerged; // throats of the diagram
+    double throats;  // of the merged network
+    double face;     // nodes of the open side, which the front grows with
+    double changes;  // rows of /changes of the drying
+    double loads;    // rows of the forces
+};
+
+// SECONDS is to be expected. LEAST and MOST differ from it where the number of time
+// steps or iterations is found only by running.
+struct cost {
+    double seconds, least, most; // of one core, user and system
+    double mebibytes;            // at most at once
+};
+
+// CHANGES and LOADS stay 0.
+struct body_size body_of_grains(double grains);
+
+// Rows of /changes that a drying records: each step has the throats that lose liquid. A
+// step is an event, or a fall of the saturation by INTERVAL; NAN: as dry chooses.
+double recorded_changes(const struct body_size *body, double interval);
+
+// Grains placed where they stay, or moved: under gravity, by compression from loose
+// points, by overlaps that push them apart, or by relaxation without inertia.
+enum moving {
+    MOVING_NOT,
+    MOVING_BY_GRAVITY,
+    MOVING_BY_COMPRESSION,
+    MOVING_BY_OVERLAPS,
+    MOVING_BY_RELAXATION
+};
+struct cost cost_of_packing(double grains, enum moving moving);
+
+struct cost cost_of_tessellation(double grains);
+struct cost cost_of_merging(const struct body_size *body);
+
+// With the rows of BODY recorded. FLOWS: viscous liquid. KELVIN: menisci lower the
+// vapour pressure. EXACT: without a tolerance.
+struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
+                           bool exact);
+
+struct cost cost_of_forces(const struct body_size *body);
+
+// BODY->loads loads by CYCLES time steps each after RAMP; by up to MOST until they are
+// at rest (MOST = CYCLES: exactly so many).
+struct cost cost_of_cycles(const struct body_size *body, double ramp, double cycles,
+                           double most);
+struct cost cost_of_equilibria(const struct body_size *body, bool friction);
+
+// SYSTEMS of pressures solved, one for each flow.
+struct cost cost_of_flow(double grains, int systems);
+
+#endif

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "parameters/estimate.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+json_t *rough(double value)
+{
+    char text[24];
+    snprintf(text, sizeof text, "%.1e", value);
+    return json_real(strtod(text, NULL));
+}
+
+void print_estimate(const struct cost *cost, const struct body_size *body)
+{
+    json_t *line = json_pack("{s:o,s:o,s:i,s:o}", "seconds", rough(cost->seconds),
+                             "mebibytes", rough(cost->mebibytes), "threads", 1,
+                             "grains", json_integer(llround(body->grains)));
+    if (body->loads > 0)
+        json_object_set_new(line, "loads", json_integer(llround(body->loads)));
+    if (cost->most > cost->least)
+        json_object_set_new(line, "range",
+                            json_pack("[oo]", rough(cost->least), rough(cost->most)));
+    json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
+    putchar('\n');
+    json_decref(line);
+}

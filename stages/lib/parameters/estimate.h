@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What --estimate prints.
+#ifndef CRAQUELURE_ESTIMATE_H
+#define CRAQUELURE_ESTIMATE_H
+
+#include "costs/costs.h"
+
+#include <jansson.h>
+
+// VALUE to two digits: more would say more than is known.
+json_t *rough(double value);
+
+// Prints on standard output, as one line of JSON, COST and the sizes of BODY that the
+// next stage of a chain may ask for; `range` only where seconds are not foreseen.
+void print_estimate(const struct cost *cost, const struct body_size *body);
+
+#endif

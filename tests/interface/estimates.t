@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""--estimate: the sizes are those of the artifacts that are then made, memory is what `time` measures, seconds
+are those of the processor (widely: other programs run), and a study plans by them."""
+import json
+import os
+import resource
+import subprocess
+import sys
+
+import h5py
+
+sys.path.insert(0, "tests")
+from tap import BIN, SCENE, done, ok, scratch, sets
+
+CHAIN = ["pack", "tessellate", "merge-nodes", "dry", "force-protocol", "dem-replay"]
+folder = scratch()
+at = lambda name: os.path.join(folder.name, name)
+
+
+def call(stage, *words):
+    ended = subprocess.run([f"{BIN}/{stage}", *words], capture_output=True, text=True, timeout=300, cwd=folder.name)
+    return ended.returncode, ended.stdout, ended.stderr
+
+
+def estimate(stage, *words):
+    status, said, error = call(stage, *words)
+    if status:
+        print(f"# {stage} {words}: {error}", file=sys.stderr)
+    return json.loads(said)
+
+
+def measured(stage, *words):
+    """CPU seconds and MiB of a run."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(["/usr/bin/time", "-q", "-f", "%M", "-o", at("peak"), f"{BIN}/{stage}", "-q", *words], check=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with open(at("peak"), encoding="utf-8") as file:
+        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, float(file.read()) / 1024
+
+
+scene = ["-p", os.path.abspath(SCENE)]
+jammed = ["-p", os.path.abspath("samples/irregular-50000.json"), *sets("count=400", "method=radius_expansion")]
+small = {"pack": jammed, "force-protocol": [*jammed[:2], *sets("steps=20")],
+         "dem-replay": [*jammed[:2], *sets("cycles=100", "time_step_safety=null", "loose_grains=unload")]}
+for title, words_of in ("a lattice", {}), ("irregular grains", small):
+    source, sizes, off = [], "", []
+    for stage in CHAIN:
+        words = words_of.get(stage, scene if not words_of else jammed[:2])
+        here, alone = estimate(stage, "--estimate", *words, *source), estimate(stage, f"--estimate={sizes}" if sizes else "--estimate", *words)
+        seconds, mebibytes = measured(stage, *words, *source, "-o", at(f"{stage}.h5"))
+        source, sizes = [at(f"{stage}.h5")], ",".join(f"{alone[k]:.12g}" for k in ("grains", "loads") if k in alone)
+        for said in here, alone:
+            low, high = said.get("range", [said["seconds"]] * 2)
+            if not (mebibytes / 2 < said["mebibytes"] < 2 * mebibytes and low / 6 < seconds < 6 * high):
+                off.append((stage, said, seconds, mebibytes))
+    ok(not off, f"{title}: memory within a factor of two, seconds of a busy machine within six", off)
+    with h5py.File(at("force-protocol.h5")) as forces:
+        shape = forces["force"].shape
+    ok((alone["grains"], alone["loads"]) == shape[:2][::-1], f"{title}: grains and loads are those that are made", f"{alone} {shape}")
+
+grown = [estimate("dry", f"--estimate={n}", *scene) for n in (1000, 10000, 100000)]
+ok(all(a["seconds"] < b["seconds"] and a["mebibytes"] < b["mebibytes"] for a, b in zip(grown, grown[1:])), "more grains take more", grown)
+status, said, error = call("dry", "--estimate", *scene)
+ok(status == 64 and said == "" and error.count("\n") == 1 and "--estimate=1000" in error, "without input or number: 64, and what to say", error)
+status, said, error = call("dem-replay", "--estimate=1000", *scene)
+ok(status == 64 and "--estimate=1000,550" in error, "a replay needs the number of loads", error)
+ok(call("dry", "--estimate=none", *scene)[0] == 64, "what is no number: 64")
+before = set(os.listdir(folder.name))
+estimate("dry", "--estimate", *scene, at("merge-nodes.h5"), "-o", at("nothing.h5"))
+ok(set(os.listdir(folder.name)) == before, "nothing is written")
+ranged = estimate("dem-replay", "--estimate=1000,100", *scene, *sets("tolerance=1e-3", "cycles=100", "most_cycles=10000"))
+exact = [estimate("dem-replay", "--estimate=1000,100", *scene, *sets(f"cycles={n}"))["seconds"] for n in (100, 10000)]
+ok(ranged["range"] == exact, "until at rest: from the fewest cycles to the most", f"{ranged} {exact}")
+cost = {row["stage"]: row for row in json.loads(call("check", at("pack.h5"), "-o", "-")[1])["cost"]}
+ok(cost["tessellate"]["seconds"] == estimate("tessellate", "--estimate=400")["seconds"], "check says what stages say", cost)
+
+# ---- a study that has no run yet --------------------------------------------------------------------
+
+with open(at("study.json"), "w", encoding="utf-8") as file:
+    json.dump({"scene": os.path.abspath(SCENE), "seeds": 40, "keep": []}, file)
+environment = {**os.environ, "BIN": BIN, "MAKEFLAGS": ""}
+study = lambda what: subprocess.run([os.path.abspath("pipelines/study/study"), what, at("study.json"), f"--runs={at('runs')}"],
+                                    capture_output=True, text=True, env=environment, timeout=120)
+said = study("plan").stdout
+ok("40 runs" in said and "of one core, as stages foresee it and disk: not known" in said, "plan says what stages foresee", said)
+said = study("batch")
+with open(at("runs/study/study.sbatch"), encoding="utf-8") as file:
+    script = file.read()
+alone = estimate("dem-replay", "--estimate=250,550", *scene)["mebibytes"]
+memory = int(script.split("--mem-per-cpu=")[1].split("M")[0])
+ok(said.returncode == 0 and "--time=" in script and memory >= 1.5 * alone, "batch asks for as much", f"{said.stderr} {script}")
+done()
