@@ -260,7 +260,7 @@ const struct parameter simulate_table[] = {
      BETWEEN(1e-4, 0.9),
      .text =
          "time step over the stability limit: with 0.5 the rebound of a grain is off "
-         "by some 3 % of its speed, with 0.2 by 0.7 %, with 0.1 by 0.3 %"},
+         "by 1 to 2 % of its speed, with 0.2 by 0.2 to 0.6 %, with 0.1 by 0.2 to 0.3 %"},
     {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", AT(allow_unstable),
      .text = "run even if time_step is past the stability limit"},
     {"expected_overlap", PARAMETER_NUMBER, "1", "0.01", AT(expected_overlap),
