@@ -135,6 +135,10 @@ static void describe(const struct simulate_parameters *parameters,
                  "liquid bridges between grains that have touched, %s: surface tension "
                  "%.6g N/m, contact angle %.6g degrees\n",
                  model, scene->liquid.surface_tension, parameters->contact_angle);
+    if (parameters->adhesion > 0)
+        snprintf(liquid, sizeof liquid,
+                 "adhesion of dry contacts (JKR): work of adhesion %.6g J/m2\n",
+                 parameters->adhesion);
     const bool bonds = scene->setup.packing->n_bond > 0;
     bool rolling = false;
     for (int k = 0; k < scene->n_material; k++)
@@ -151,7 +155,7 @@ static void describe(const struct simulate_parameters *parameters,
                                                      : "parallel bonds\n",
              liquid, rolling ? "elastic-plastic rolling resistance\n" : "",
              bonds ? "" : "bonds, ", rolling ? "" : "rolling resistance, ",
-             *liquid ? "" : "liquid bridges, ");
+             scene->setup.liquid ? "" : "liquid bridges, ");
 }
 
 static void write(const struct simulate_parameters *parameters,

@@ -248,6 +248,10 @@ const struct parameter simulate_table[] = {
     {"bridges.pull_in_contact", PARAMETER_BOOLEAN, "1", "true",
      AT(liquid.pulls_in_contact),
      .text = "bridges also pull where grains overlap; false: only across a gap [G 4]"},
+    {"adhesion", PARAMETER_NUMBER, "J m-2", "0", AT(adhesion), AT_LEAST(0),
+     .text =
+         "work of adhesion of dry contacts, also with walls (Johnson, Kendall and "
+         "Roberts), twice the surface energy of two equal materials; needs law=hertz"},
     {"forces.row", PARAMETER_INTEGER, "1", "-1", AT(forces_row), BETWEEN(-1e9, 1e9),
      .text =
          "of a second input, a forces artifact: its forces at this time, from 0; -1 "
@@ -260,7 +264,8 @@ const struct parameter simulate_table[] = {
      BETWEEN(1e-4, 0.9),
      .text =
          "time step over the stability limit: with 0.5 the rebound of a grain is off "
-         "by 1 to 2 % of its speed, with 0.2 by 0.2 to 0.6 %, with 0.1 by 0.2 to 0.3 %"},
+         "by 1 to 2 % of its speed, with 0.2 by 0.2 to 0.6 %, with 0.1 by 0.2 to 0.3 "
+         "%"},
     {"allow_unstable", PARAMETER_BOOLEAN, "1", "false", AT(allow_unstable),
      .text = "run even if time_step is past the stability limit"},
     {"expected_overlap", PARAMETER_NUMBER, "1", "0.01", AT(expected_overlap),
@@ -363,6 +368,11 @@ void check_parameters(const struct simulate_parameters *parameters)
             "\"young_modulus\": 7e10}}");
     if (parameters->law == LAW_TIMED && isnan(parameters->contact_time))
         die(STATUS_BAD_DATA, "simulate.contact_time: must be given with law=timed");
+    if (parameters->adhesion > 0 &&
+        (parameters->law != LAW_HERTZ || parameters->liquid.volume > 0))
+        die(STATUS_BAD_DATA,
+            "simulate.adhesion: must be 0 with liquid bridges (bridges.volume), and "
+            "without law=hertz");
     for (int k = 0; k < materials->count; k++)
         check_material(materials->name[k],
                        (const struct material_parameters *)materials->row + k,

@@ -312,6 +312,7 @@ static void set_engine(const struct simulate_parameters *parameters,
     setup->largest_overlap = parameters->expected_overlap;
     setup->force_time_step = parameters->allow_unstable;
     setup->unstressed = !parameters->prestress;
+    setup->adhesion = parameters->adhesion;
     setup->friction_feels_dashpot = parameters->friction_limit == 1;
     setup->no_tensile_damping = !parameters->tensile_damping;
     setup->balance_energy = parameters->record_energy;

@@ -26,6 +26,11 @@ scene("a linear material without stiffness", {"law": "linear"},
       r"simulate\.materials\.glass\.normal_stiffness: must be given with law=linear")
 scene("timed contacts without their time", {"law": "timed"},
       r"simulate\.contact_time: must be given with law=timed")
+scene("adhesion with liquid is refused", {"adhesion": 0.1, "bridges": {"volume": 1e-12}},
+      r"simulate\.adhesion: must be 0 with liquid bridges .*")
+scene("adhesion of springs that are no Hertz contacts is refused", {
+    "adhesion": 0.1, "law": "linear", "materials": {"glass": {"normal_stiffness": 100}}},
+      r"simulate\.adhesion: must be 0 .*without law=hertz")
 scene("an unknown key of a named object", {"walls": {"floor": {"point": [0, 0, 0], "frction": 1}}},
       r"SCENE: simulate\.walls\.floor\.frction: unknown key; the nearest known one is friction")
 scene("a wall that is no object", {"walls": {"floor": 3}},

@@ -312,6 +312,30 @@ static void rolling_cloud(void **state)
     packing_free(&packing);
 }
 
+// Dry grains that adhere to each other and to a belt.
+static void adhesive_cloud(void **state)
+{
+    (void)state;
+    struct packing packing = cloud(8, 0.4, false);
+    const struct vector up = packing.upper;
+    const struct dem_wall belt = {.point = scale(0.5, up),
+                                  .shape = DEM_SPHERE,
+                                  .radius = 0.87 * up.x,
+                                  .spin = {0, 1e7, 1e7}};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.law = DEM_HERTZ;
+    setup.material.young_modulus = 1e9;
+    setup.material.poisson_ratio = 0.25;
+    setup.material.restitution = 0.8;
+    setup.largest_overlap = 0.1;
+    setup.adhesion = 0.1;
+    setup.balance_energy = true;
+    setup.n_wall = 1;
+    setup.wall = &belt;
+    check(&setup, fly);
+    packing_free(&packing);
+}
+
 static void two_timed_materials(void **state)
 {
     (void)state;
@@ -564,12 +588,12 @@ int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bonded_lattice),   cmocka_unit_test(contact_bonds),
-        cmocka_unit_test(walled_cloud),     cmocka_unit_test(hertz_cloud),
-        cmocka_unit_test(rolling_cloud),    cmocka_unit_test(two_timed_materials),
-        cmocka_unit_test(renumbered_crowd), cmocka_unit_test(squeezed_crowd),
-        cmocka_unit_test(stirred_crowd),    cmocka_unit_test(no_grains),
-        cmocka_unit_test(damaged_arrays),   cmocka_unit_test(flipped_bits),
-        cmocka_unit_test(another_scene)};
+        cmocka_unit_test(bonded_lattice),      cmocka_unit_test(contact_bonds),
+        cmocka_unit_test(walled_cloud),        cmocka_unit_test(hertz_cloud),
+        cmocka_unit_test(rolling_cloud),       cmocka_unit_test(adhesive_cloud),
+        cmocka_unit_test(two_timed_materials), cmocka_unit_test(renumbered_crowd),
+        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(stirred_crowd),
+        cmocka_unit_test(no_grains),           cmocka_unit_test(damaged_arrays),
+        cmocka_unit_test(flipped_bits),        cmocka_unit_test(another_scene)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,6 +119,16 @@ motion = simulate(packing([[0, 0, -reach, 1e-3]]),
 spin = motion["snapshots/spin"][-1, 0, 1]
 near(spin, 5 * 20, 2e-2, "a pipe that turns makes a ball roll on the spot")
 
+# Adhesion holds a grain under a ceiling up to 3/2 pi w R, and a sticky heap has the same bytes on two threads.
+ceiling = {"ceiling": {"point": [0, 0, 1e-3], "normal": [0, 0, -1]}}
+holds = 2500 * 4 / 3 * math.pi * 1e-9 * 9.81 / (1.5 * math.pi * 1e-3)
+for share in 1.05, 0.95:
+    motion = simulate(packing([0, 0, 0, 1e-3]), {"duration": 0.1, "walls": ceiling, "adhesion": share * holds,
+                                                 "local_damping": 0.9})
+    falls = motion["snapshots/position"][-1, 0, 2] < -1e-3
+    ok(falls == (share < 1), f"a grain of {1 / share:.2f} times the pull-off force {'falls' if share < 1 else 'hangs'}")
+    ok("history/bridges" not in motion and "contacts/bridge_volume" not in motion, "and no liquid is recorded")
+
 # An oedometer of elastic spheres: Hertz, F = 4/3 E* sqrt(R) U^1.5 at a wall of the same material.
 press = {"lid": {"point": [0, 0, 2e-3], "normal": [0, 0, -1], "velocity": [0, 0, -1e-3], "material": "glass",
                  "motion": {"times": [0, 0.01, 0.01001], "factors": [1, 1, 0]}},

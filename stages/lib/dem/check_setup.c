@@ -170,6 +170,18 @@ static enum status check_liquid(const struct dem_liquid *l, struct reason *reaso
     return CHECK(quantity, reason);
 }
 
+static enum status check_adhesion(const struct dem_setup *setup, struct reason *reason)
+{
+    const struct quantity work = {"adhesion", setup->adhesion, 0,
+                                  INFINITY,   false,           false};
+    if (setup->adhesion > 0 &&
+        (setup->law != DEM_HERTZ || setup->liquid || setup->shrinks))
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "adhesion needs Hertz contacts, of dry grains that do not shrink");
+    return check_quantity(&work, reason);
+}
+
 // The safety counts only where nothing else sets the step.
 static enum status check_numbers(const struct dem_setup *setup, struct reason *reason)
 {
@@ -178,6 +190,7 @@ static enum status check_numbers(const struct dem_setup *setup, struct reason *r
     if (status == STATUS_OK) status = check_rolling(setup, reason);
     if (status == STATUS_OK && setup->liquid)
         status = check_liquid(setup->liquid, reason);
+    if (status == STATUS_OK) status = check_adhesion(setup, reason);
     if (status != STATUS_OK) return status;
     const double no_limit = INFINITY;
     const bool is_automatic = setup->time_step > 0 || isnan(setup->time_step_safety);

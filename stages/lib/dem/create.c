@@ -442,6 +442,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     dem->gaps = has_avx512() ? pair_gaps_avx512 : pair_gaps_avx2;
     enum status status =
         setup->liquid ? take_liquid(dem, setup->liquid, reason) : STATUS_OK;
+    if (setup->adhesion > 0) take_adhesion(dem, setup->adhesion / dem->unit.stiffness);
     if (status == STATUS_OK) status = check_periods(dem, reason);
     if (status != STATUS_OK) return status;
     renumber_grains(dem);

@@ -159,6 +159,9 @@ struct dem_setup {
     // (n_bond) NULL: those of `bond`
     const double *normal_strength, *shear_strength;
     const struct dem_liquid *liquid; // NULL: dry
+    // J/m2, of dry Hertz contacts, also with walls [adhesion.c]; 0: none. Friction is
+    // limited by the Hertz spring, so by what presses and what adhesion adds to it.
+    double adhesion;
     const uint8_t *fixed; // (n_particle) 1: neither moves nor turns; NULL: none
     int n_group;          // at most 255
     const struct dem_group *group; // (n_group)
@@ -213,7 +216,7 @@ struct dem_contact {
                          // compression
     struct vector position; // m, the contact point [K 4.9]
     double bridge_volume;   // m3, 0: no bridge between them
-    double bridge_force;    // N, > 0 when it pulls; part of FORCE
+    double bridge_force;    // N, > 0 when it pulls; part of FORCE; or of adhesion
 };
 
 // Energies, J. Balance: kinetic + elastic + lost = initial + gained.
@@ -225,7 +228,8 @@ struct dem_energy {
                    // move, and of rescaling
     double dashpots, slip, local_damping; // lost
     double broken;                        // elastic energy of bonds when they broke
-    double bridges; // that liquid bridges took up, and lost when they ruptured
+    double bridges; // that liquid bridges took up, and lost when they ruptured; or
+                    // adhesion
 };
 
 // Of the grains that are not driven.

@@ -75,7 +75,8 @@ struct material {
 
 // The liquid of a wet scene, and what holds for all bridges.
 struct liquid {
-    struct dem_liquid is;        // scaled
+    struct dem_liquid is;        // scaled; of adhesion its work is the surface tension
+    bool is_adhesion;            // no liquid: dry grains adhere [adhesion.c]
     struct bridge_ratios *table; // of BRIDGE_TABLE
     double cutoff;               // the longest gap that any bridge can have
     double wall_cutoff;          // to a wall
@@ -321,6 +322,7 @@ void set_grain_order(struct dem *dem, const int32_t *id);
 // and J are indices of the engine.
 struct contact_law pair_law(const struct dem *dem, int i, int j);
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
+double plane_strain_compliance(const struct material *m); // (1 - nu^2)/E, Hertz
 // Rolling resistance [rolling.c]; nothing without FEATURE_ROLLING. Of a pair with the
 // normal STIFFNESS of its law, of two grains like I; stiffness and damping of rolling
 // at a secant STIFFNESS and OVERLAP of the contact.
@@ -363,6 +365,8 @@ void free_liquid(struct liquid *liquid);     // or NULL
 // Scales IS; before pairs are sought. BRIDGE_TABLE is made here, which can fail.
 enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
                         struct reason *reason);
+// Adhesion in place of liquid, of this WORK, scaled [adhesion.c].
+void take_adhesion(struct dem *dem, double work);
 void set_bridge_radius(const struct dem *dem, int pair);
 void form_bridges(struct dem *dem);  // where grains touch as they lie
 void count_bridges(struct dem *dem); // of each grain, from the pairs
@@ -378,6 +382,15 @@ void set_wall_bridge_radius(const struct dem *dem, struct wall_pair *pair);
 void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double overlap);
 struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
+
+// Adhesion [adhesion.c], in effective radii RADIUS = 2 R*, as bridges. The number
+// w/(E* R*) of a contact whose law has this normal STIFFNESS for the radius LAW_RADIUS;
+// the gap at which it breaks; the overlap at which a Hertz contact is as large as this
+// one under no load, and stiffer. Pulls beside the Hertz spring, over work and RADIUS.
+double adhesion_number(double work, double stiffness, double law_radius, double radius);
+double adhesion_rupture(double number);
+double adhesion_overlap(double number);
+void adhesion_pulls(int count, const double *number, const double *gap, double *pull);
 
 // Room for the shrinkage of grains, if SETUP has any [shrinkage.c].
 void take_shrinkage(struct dem *dem, const struct dem_setup *setup);

@@ -18,6 +18,9 @@
 // rupture by 0.8, 1.6, 2.8 and 4 %; half of that at twenty radii. Rings and blocks
 // count as flat, their edges too.
 //
+// Dry grains that adhere [adhesion.c] are bridges of another kind: f then is that of
+// Johnson, Kendall and Roberts, and `volume` the number w/(E* R*) of the contact.
+//
 // The grains among which liquid is shared are counted as of the end of the cycle
 // before. So the order in which bridges come and go, and with it the number of threads,
 // does not matter.
@@ -50,6 +53,7 @@ double bridge_cutoff(const struct dem *dem)
 // ruptures.
 static double rupture_gap(const struct liquid *liquid, double asymmetry, double volume)
 {
+    if (liquid->is_adhesion) return adhesion_rupture(volume);
     if (liquid->table) return bridge_ratios_rupture(liquid->table, asymmetry, volume);
     const struct bridge bridge = {
         {1, 1}, {liquid->is.contact_angle, liquid->is.contact_angle}, 1, volume};
@@ -74,6 +78,29 @@ static double volume_between(const struct liquid *liquid, int i, int j)
                              : liquid->is.volume;
 }
 
+// `volume` of a bridge between two grains with this effective RADIUS.
+static double pair_volume(const struct dem *dem, int i, int j, double radius)
+{
+    const struct liquid *liquid = dem->liquid;
+    if (liquid->is_adhesion)
+        return adhesion_number(liquid->is.surface_tension,
+                               pair_law(dem, i, j).normal_stiffness, 0.5 * radius,
+                               radius);
+    return volume_between(liquid, i, j) / (radius * radius * radius);
+}
+
+// The same at a wall. The law of a contact with a wall has the radius of the grain.
+static double wall_volume(const struct dem *dem, const struct wall_pair *pair)
+{
+    const struct liquid *liquid = dem->liquid;
+    const double radius = pair->bridge_radius;
+    if (liquid->is_adhesion)
+        return adhesion_number(liquid->is.surface_tension, pair->law.normal_stiffness,
+                               dem->place[pair->particle].radius, radius);
+    return (liquid->is.shared ? share_of(liquid, pair->particle) : liquid->is.volume) /
+           (radius * radius * radius);
+}
+
 // Sets what follows from a bridge's VOLUME over the cube of the effective radius,
 // unless it has that already.
 static void take_volume(const struct liquid *liquid, double asymmetry, double volume,
@@ -87,10 +114,9 @@ static void take_volume(const struct liquid *liquid, double asymmetry, double vo
 static void set_volume(const struct dem *dem, struct liquid_group *group, int lane,
                        int i, int j)
 {
-    const double radius = group->radius[lane];
     take_volume(dem->liquid, group->asymmetry[lane],
-                volume_between(dem->liquid, i, j) / (radius * radius * radius),
-                &group->volume[lane], &group->rupture[lane]);
+                pair_volume(dem, i, j, group->radius[lane]), &group->volume[lane],
+                &group->rupture[lane]);
 }
 
 static void count_at_end(struct liquid *liquid, int i, int by)
@@ -133,7 +159,9 @@ static void update_bridge(const struct dem *dem, int k, int lane, double gap,
 static void find_forces(const struct liquid *liquid, int count, const double *asymmetry,
                         const double *volume, const double *gap, double *force)
 {
-    if (liquid->table)
+    if (liquid->is_adhesion)
+        adhesion_pulls(count, volume, gap, force);
+    else if (liquid->table)
         bridge_ratios_forces(liquid->table, count, asymmetry, volume, gap, force);
     else
         bridge_model_forces(liquid->is.model, liquid->is.contact_angle, count, volume,
@@ -231,12 +259,9 @@ void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double ov
     if (exists != existed) count_at_end(liquid, pair->particle, exists - existed);
     if (!exists) pair->bridge_volume = 0;
     pair->bridge_pull = 0;
-    if (exists && (!existed || liquid->is.shared)) {
-        const double volume =
-            liquid->is.shared ? share_of(liquid, pair->particle) : liquid->is.volume;
-        take_volume(liquid, 1, volume / (radius * radius * radius),
-                    &pair->bridge_volume, &pair->bridge_rupture);
-    }
+    if (exists && (!existed || liquid->is.shared))
+        take_volume(liquid, 1, wall_volume(dem, pair), &pair->bridge_volume,
+                    &pair->bridge_rupture);
     if (!exists || (gap <= 0 && !liquid->is.pulls_in_contact)) return;
     double force;
     find_forces(liquid, 1, &(double){1}, &pair->bridge_volume, &gap, &force);
@@ -328,16 +353,23 @@ static enum status check_wet_walls(const struct dem *dem, struct reason *reason)
     return STATUS_OK;
 }
 
+// Empty, with room for the counts of all grains.
+static struct liquid *new_liquid(const struct dem *dem, const struct dem_liquid *is)
+{
+    struct liquid *liquid = NEW_ARRAY(struct liquid, 1);
+    liquid->is = *is;
+    liquid->bridges = NEW_ARRAY(int32_t, dem->n_particle);
+    liquid->next = NEW_ARRAY(int32_t, dem->n_particle);
+    return liquid;
+}
+
 enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
                         struct reason *reason)
 {
     const double length = dem->unit.length;
-    struct liquid *liquid = dem->liquid = NEW_ARRAY(struct liquid, 1);
-    liquid->is = *is;
+    struct liquid *liquid = dem->liquid = new_liquid(dem, is);
     liquid->is.surface_tension /= dem->unit.stiffness;
     liquid->is.volume /= length * length * length;
-    liquid->bridges = NEW_ARRAY(int32_t, dem->n_particle);
-    liquid->next = NEW_ARRAY(int32_t, dem->n_particle);
     if (is->wets_walls) {
         const enum status status = check_wet_walls(dem, reason);
         if (status) return status;
@@ -353,6 +385,26 @@ enum status take_liquid(struct dem *dem, const struct dem_liquid *is,
     return STATUS_OK;
 }
 
+// The gap at which a contact of effective RADIUS breaks grows with RADIUS and as
+// materials get softer, and so does the size that it has under no load.
+void take_adhesion(struct dem *dem, double work)
+{
+    const struct dem_liquid is = {
+        .surface_tension = work, .pulls_in_contact = true, .wets_walls = true};
+    struct liquid *liquid = dem->liquid = new_liquid(dem, &is);
+    liquid->is_adhesion = true;
+    double softest = 0; // compliance
+    for (int k = 0; k < dem->n_material; k++)
+        softest = fmax(softest, plane_strain_compliance(&dem->material[k]));
+    double widest = dem->largest_radius;
+    for (int w = 0; w < dem->n_wall; w++)
+        widest = fmax(widest, radius_at_wall(dem->largest_radius, &dem->wall[w].is));
+    const double number = work * 2 * softest / (0.5 * widest);
+    liquid->cutoff = liquid->wall_cutoff = widest * adhesion_rupture(number);
+    dem->expected_overlap =
+        fmax(dem->expected_overlap, widest * adhesion_overlap(number));
+}
+
 void free_liquid(struct liquid *liquid)
 {
     if (!liquid) return;
@@ -360,6 +412,12 @@ void free_liquid(struct liquid *liquid)
     free(liquid->bridges);
     free(liquid->next);
     free(liquid);
+}
+
+// Its volume, m3, with RADIUS in m; adhesion has none.
+static double liquid_of(const struct dem *dem, double volume, double radius)
+{
+    return dem->liquid->is_adhesion ? 0 : volume * radius * radius * radius;
 }
 
 struct dem_bridge bridge_of_pair(const struct dem *dem, int pair)
@@ -372,7 +430,7 @@ struct dem_bridge bridge_of_pair(const struct dem *dem, int pair)
     const int32_t b = dem->id[dem->pairs.particle[pair][1]];
     return (struct dem_bridge){
         .particle = {a < b ? a : b, a < b ? b : a},
-        .volume = group->volume[lane] * radius * radius * radius,
+        .volume = liquid_of(dem, group->volume[lane], radius),
         .separation = -length * pair_geometry(dem, pair, places_ahead(dem)).overlap,
         .force = group->pull[lane] * dem->unit.stiffness * length};
 }
@@ -383,7 +441,7 @@ struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
     if (!is_wall_bridged(dem, pair)) return (struct dem_bridge){.volume = 0};
     const double length = dem->unit.length, radius = pair->bridge_radius * length;
     return (struct dem_bridge){.particle = {dem->id[pair->particle], -1 - pair->wall},
-                               .volume = pair->bridge_volume * radius * radius * radius,
+                               .volume = liquid_of(dem, pair->bridge_volume, radius),
                                .separation = -length * pair->depth,
                                .force =
                                    pair->bridge_pull * dem->unit.stiffness * length};

@@ -65,7 +65,7 @@ static struct contact_law timed_law(const struct dem *dem,
 
 // (1 - nu^2)/E and (2 - nu)(1 + nu)/E: what each body adds to 1/E* and to 1/(2 G*) [K
 // 4.23 has the same law in other words].
-static double normal_compliance(const struct material *m)
+double plane_strain_compliance(const struct material *m)
 {
     return (1 - m->poisson_ratio * m->poisson_ratio) / m->young_modulus;
 }
@@ -84,7 +84,7 @@ static struct contact_law hertz_law(const struct dem *dem,
     const struct material *a = &dem->material[e->first];
     const struct material *b = rigid ? a : &dem->material[e->second];
     const double normal =
-        1 / (normal_compliance(a) + (rigid ? 0 : normal_compliance(b)));
+        1 / (plane_strain_compliance(a) + (rigid ? 0 : plane_strain_compliance(b)));
     const double shear =
         1 / (2 * (shear_compliance(a) + (rigid ? 0 : shear_compliance(b))));
     const double root = sqrt(e->radius);
