@@ -4,64 +4,56 @@
 // out), R* and E* as in materials.c and the work of adhesion w, J/m2,
 //     U = a^2/R* - sqrt(2 pi w a/E*)
 //     F = 4 E* a^3/(3 R*) - sqrt(8 pi w E* a^3).
-// With s = sqrt(a/R*), g = U/R*, NUMBER = w/(E* R*) and c = sqrt(2 pi NUMBER) this is
-//     s^4 - c s - g = 0,   F/(E* R*^2) = 4/3 s^6 - 2 c s^3.
-// A contact forms at U = 0 and breaks where the two roots s meet, at s^3 = c/4. Before,
-// at s^3 = 3/4 c, it pulls most: F = -3/2 pi w R*.
+// In the units that c = 2 pi w/(E* R*) gives, y = sqrt(a/R*)/c^(1/6) and
+// q = U/(R* c^(2/3)), this holds for all contacts alike:
+//     y^4 - y - q = 0,   F/(pi w R*) = 8/3 y^6 - 4 y^3.
+// A contact forms at q = 0 and breaks where the two roots meet, at y_c^3 = 1/4 and
+// q_c = -3/4 y_c. Before, at y^3 = 3/4, it pulls most, with 3/2 pi w R*.
 //
-// The pair sweep has the Hertz spring 4/3 g^1.5. The rest acts as the pull of a liquid
+// The pair sweep has the Hertz spring, 8/3 q^1.5. The rest acts as the pull of a liquid
 // bridge does (liquid.c): formed by touch, kept until it breaks, work in the ledger of
 // bridges.
 #include "dem/engine.h"
 
 #include <math.h>
 
-double adhesion_number(double work, double stiffness, double law_radius, double radius)
+#define BREAKS_AT 0.62996052494743658 // y_c
+
+double adhesion_unit(double work, double modulus, double radius)
 {
-    const double modulus = 0.75 * stiffness / sqrt(law_radius);
-    return work / (modulus * 0.5 * radius);
+    const double c = 2 * M_PI * work / (modulus * 0.5 * radius);
+    return 0.5 * cbrt(c * c);
 }
 
-static double coefficient(double number)
+double adhesion_rupture(double unit)
 {
-    return sqrt(2 * M_PI * number);
+    return 0.75 * BREAKS_AT * unit;
 }
 
-double adhesion_rupture(double number)
+double adhesion_overlap(double unit)
 {
-    const double c = coefficient(number);
-    return 0.5 * 0.75 * c * cbrt(0.25 * c);
+    return pow(1.5, 4.0 / 3) * unit;
 }
 
-double adhesion_overlap(double number)
+// The larger root is y = y_c + d with d^4 + 4 y_c d^3 + 6 y_c^2 d^2 = q - q_c, of which
+// nothing cancels next to q_c. Its left side is convex, and without any of its terms d
+// is too large: so Newton's method falls to the root from above, from the better of two
+// such bounds to rounding in five steps.
+void adhesion_pulls(int count, const double *unit, const double *gap, double *pull)
 {
-    return 0.5 * pow(1.5 * coefficient(number), 4.0 / 3);
-}
-
-// The largest root s by Newton's method. It begins above the root, where the function
-// is convex: s falls until rounding stops it, in some 50 steps next to the double root,
-// in 5 elsewhere.
-static double contact_size(double c, double g)
-{
-    enum { MOST_STEPS = 100 };
-    const double unloaded = cbrt(c), least = unloaded * 0.62996052494743658; // 4^(-1/3)
-    double s = sqrt(sqrt(fmax(g, 0))) + unloaded;
-    for (int k = 0; k < MOST_STEPS; k++) {
-        const double cube = s * s * s;
-        const double next = s - (s * (cube - c) - g) / (4 * cube - c);
-        if (!(next < s)) return s;
-        if (next <= least) return least;
-        s = next;
-    }
-    return s;
-}
-
-void adhesion_pulls(int count, const double *number, const double *gap, double *pull)
-{
+    enum { STEPS = 6 };
+    const double b = BREAKS_AT, tiny = 1e-150; // against 0/0 where it breaks
     for (int k = 0; k < count; k++) {
-        const double c = coefficient(number[k]), g = -2 * gap[k];
-        const double s = contact_size(c, g), cube = s * s * s;
-        const double spring = g > 0 ? 4.0 / 3 * g * sqrt(g) : 0;
-        pull[k] = (spring - (4.0 / 3 * cube - 2 * c) * cube) / (2 * number[k]);
+        const double q = -gap[k] / unit[k], above = q + 0.75 * b;
+        const double root = sqrt(above > 0 ? above : 0);
+        const double small = root / (sqrt(6.0) * b), large = sqrt(root);
+        const double start = small < large ? small : large;
+        double d = start > tiny ? start : tiny;
+        for (int n = 0; n < STEPS; n++)
+            d -= (((d + 4 * b) * d + 6 * b * b) * d * d - (above > 0 ? above : 0)) /
+                 (((4 * d + 12 * b) * d + 12 * b * b) * d);
+        const double y = b + d, cube = y * y * y, pressed = q > 0 ? q : 0;
+        pull[k] =
+            M_PI * (4.0 / 3 * pressed * sqrt(pressed) - (4.0 / 3 * cube - 2) * cube);
     }
 }

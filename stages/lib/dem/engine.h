@@ -383,14 +383,14 @@ void update_wall_bridge(const struct dem *dem, struct wall_pair *pair, double ov
 struct dem_bridge bridge_of_wall_pair(const struct dem *dem,
                                       const struct wall_pair *pair);
 
-// Adhesion [adhesion.c], in effective radii RADIUS = 2 R*, as bridges. The number
-// w/(E* R*) of a contact whose law has this normal STIFFNESS for the radius LAW_RADIUS;
-// the gap at which it breaks; the overlap at which a Hertz contact is as large as this
-// one under no load, and stiffer. Pulls beside the Hertz spring, over work and RADIUS.
-double adhesion_number(double work, double stiffness, double law_radius, double radius);
-double adhesion_rupture(double number);
-double adhesion_overlap(double number);
-void adhesion_pulls(int count, const double *number, const double *gap, double *pull);
+// Adhesion [adhesion.c], in effective radii RADIUS = 2 R*, as bridges. The UNIT of gaps
+// and overlaps of a contact of MODULUS E*; the gap at which it breaks; the overlap at
+// which a Hertz contact is as large as this one under no load, and stiffer. Pulls
+// beside the Hertz spring, over work and RADIUS.
+double adhesion_unit(double work, double modulus, double radius);
+double adhesion_rupture(double unit);
+double adhesion_overlap(double unit);
+void adhesion_pulls(int count, const double *unit, const double *gap, double *pull);
 
 // Room for the shrinkage of grains, if SETUP has any [shrinkage.c].
 void take_shrinkage(struct dem *dem, const struct dem_setup *setup);

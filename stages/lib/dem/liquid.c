@@ -19,7 +19,7 @@
 // count as flat, their edges too.
 //
 // Dry grains that adhere [adhesion.c] are bridges of another kind: f then is that of
-// Johnson, Kendall and Roberts, and `volume` the number w/(E* R*) of the contact.
+// Johnson, Kendall and Roberts, and `volume` the unit of gaps of the contact.
 //
 // The grains among which liquid is shared are counted as of the end of the cycle
 // before. So the order in which bridges come and go, and with it the number of threads,
@@ -78,15 +78,21 @@ static double volume_between(const struct liquid *liquid, int i, int j)
                              : liquid->is.volume;
 }
 
+// E* of a Hertz contact from the STIFFNESS of its law, 4/3 E* sqrt(RADIUS).
+static double modulus_of(double stiffness, double radius)
+{
+    return 0.75 * stiffness / sqrt(radius);
+}
+
 // `volume` of a bridge between two grains with this effective RADIUS.
 static double pair_volume(const struct dem *dem, int i, int j, double radius)
 {
     const struct liquid *liquid = dem->liquid;
-    if (liquid->is_adhesion)
-        return adhesion_number(liquid->is.surface_tension,
-                               pair_law(dem, i, j).normal_stiffness, 0.5 * radius,
-                               radius);
-    return volume_between(liquid, i, j) / (radius * radius * radius);
+    if (!liquid->is_adhesion)
+        return volume_between(liquid, i, j) / (radius * radius * radius);
+    const double stiffness = pair_law(dem, i, j).normal_stiffness;
+    return adhesion_unit(liquid->is.surface_tension,
+                         modulus_of(stiffness, 0.5 * radius), radius);
 }
 
 // The same at a wall. The law of a contact with a wall has the radius of the grain.
@@ -94,11 +100,13 @@ static double wall_volume(const struct dem *dem, const struct wall_pair *pair)
 {
     const struct liquid *liquid = dem->liquid;
     const double radius = pair->bridge_radius;
-    if (liquid->is_adhesion)
-        return adhesion_number(liquid->is.surface_tension, pair->law.normal_stiffness,
-                               dem->place[pair->particle].radius, radius);
-    return (liquid->is.shared ? share_of(liquid, pair->particle) : liquid->is.volume) /
-           (radius * radius * radius);
+    if (!liquid->is_adhesion)
+        return (liquid->is.shared ? share_of(liquid, pair->particle)
+                                  : liquid->is.volume) /
+               (radius * radius * radius);
+    const double grain = dem->place[pair->particle].radius;
+    return adhesion_unit(liquid->is.surface_tension,
+                         modulus_of(pair->law.normal_stiffness, grain), radius);
 }
 
 // Sets what follows from a bridge's VOLUME over the cube of the effective radius,
@@ -399,10 +407,10 @@ void take_adhesion(struct dem *dem, double work)
     double widest = dem->largest_radius;
     for (int w = 0; w < dem->n_wall; w++)
         widest = fmax(widest, radius_at_wall(dem->largest_radius, &dem->wall[w].is));
-    const double number = work * 2 * softest / (0.5 * widest);
-    liquid->cutoff = liquid->wall_cutoff = widest * adhesion_rupture(number);
+    const double unit = adhesion_unit(work, 1 / (2 * softest), widest);
+    liquid->cutoff = liquid->wall_cutoff = widest * adhesion_rupture(unit);
     dem->expected_overlap =
-        fmax(dem->expected_overlap, widest * adhesion_overlap(number));
+        fmax(dem->expected_overlap, widest * adhesion_overlap(unit));
 }
 
 void free_liquid(struct liquid *liquid)

@@ -96,7 +96,7 @@ struct liquid_group {
     _Alignas(CACHE_LINE) double pull[PAIRS_IN_GROUP]; // of the bridge, in this cycle
     double radius[PAIRS_IN_GROUP];                    // effective [G 1]
     double asymmetry[PAIRS_IN_GROUP]; // of the two radii [bridges/ratios.h]
-    // Over its cube; 0: no bridge. Of adhesion the number w/(E* R*).
+    // Over its cube; 0: no bridge. Of adhesion the unit of gaps.
     double volume[PAIRS_IN_GROUP];
     double rupture[PAIRS_IN_GROUP];   // the gap at which it ruptures, over the radius
 };
