@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // flow: viscous flow through a packing, and its drag on every grain.
 //
-// In this order: cells and pores (cells.h), throats and their conductances, boundary
+// In this order: cells and pores (pore_cells.h), throats and their conductances, boundary
 // conditions, how fast pores open (if anything moves), pressures, forces, then what is
 // asked for: Stokes' drag, pore stresses, the permeability tensor, column by column
 // from a pressure drop of 1 Pa along each axis. With U the mean velocity for a
@@ -16,7 +16,7 @@
 // Throats come before the conditions because these do not change them: the tensor
 // solves three times on the same throats. Velocities only give sources; grains stay
 // where they are. From find_cells to write all but permeabilities is in units of length
-// (grains.h) and for a viscosity of 1, with pressures in Pa.
+// (cell_grains.h) and for a viscosity of 1, with pressures in Pa.
 #include "artifacts/artifact.h"
 #include "artifacts/body_size.h"
 #include "basics/memory.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The throats between pores: their geometry and what they conduct [C 2.2.2]. A throat
 // is a facet between two cells, with the double pyramid from it to their two centres.
-// Everything is in units (grains.h), conductances in unit^3 for a viscosity of 1.
+// Everything is in units (cell_grains.h), conductances in unit^3 for a viscosity of 1.
 #ifndef CRAQUELURE_FLOW_THROATS_H
 #define CRAQUELURE_FLOW_THROATS_H
 
-#include "cells.h"
+#include "network/pore_cells.h"
 
 #include <stddef.h>
 

@@ -4,7 +4,7 @@
 // same, and pores come to where walls put them as one over their radius.
 #include "../test.h"
 #include "basics/memory.h"
-#include "flow/cells.h"
+#include "network/pore_cells.h"
 #include "geometry/triangulation/regular_triangulation.h"
 
 #include <math.h>

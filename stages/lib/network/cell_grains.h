@@ -2,8 +2,8 @@
 // The grains in the units of the computation, and their copies in a periodic box. The
 // unit of length is the cube root of the box volume per grain, so that all that follows
 // is of the order of 1, whatever the size of the grains.
-#ifndef CRAQUELURE_FLOW_GRAINS_H
-#define CRAQUELURE_FLOW_GRAINS_H
+#ifndef CRAQUELURE_CELL_GRAINS_H
+#define CRAQUELURE_CELL_GRAINS_H
 
 #include "basics/status.h"
 #include "geometry/image.h"

@@ -8,7 +8,7 @@
 // order) is a grain itself represents all its copies, and neighbours are looked up by
 // name. Cells whose centres coincide, as on lattices, are one pore; flat cells, whose
 // centre would be rounding noise, take that of a neighbour.
-#include "cells.h"
+#include "network/pore_cells.h"
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"

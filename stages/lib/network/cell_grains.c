@@ -9,7 +9,7 @@
 // so that 50 bits hold any place in the box. Copies are made along one axis after the
 // other, of all grains and copies there are by then. Weights are radii squared and are
 // not rounded: equal grains have equal weights already.
-#include "grains.h"
+#include "network/cell_grains.h"
 
 #include "basics/memory.h"
 
@@ -103,8 +103,10 @@ enum status place_grains(const struct packing *packing, double reach,
     *grains = (struct grains){.n = n, .n_base = n, .reach = reach};
     if (n == 0) return refuse(reason, STATUS_BAD_DATA, "the packing holds no grains");
     if (packing->n_body > 0)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "/domain/bodies/shape: flow knows no walls but those of the box");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "/domain/bodies/shape: pores are found between the walls of the box "
+            "only, not beside bodies");
     const double unit = grains->unit = unit_for(packing);
     grains->position = NEW_ARRAY(struct vector, n);
     grains->weight = NEW_ARRAY(double, n);

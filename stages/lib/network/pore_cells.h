@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tetrahedra of the regular triangulation of grains and walls, each with its pore
 // [C 2.1]. A wall is a sphere of unlimited radius, so a cell has from one to four
-// grains among its corners. All lengths are in units (grains.h). Topology is decided by
-// exact predicates on the grid of grains.h, so equal input gives equal cells.
-#ifndef CRAQUELURE_FLOW_CELLS_H
-#define CRAQUELURE_FLOW_CELLS_H
+// grains among its corners. All lengths are in units (cell_grains.h). Topology is
+// decided by exact predicates on the grid of cell_grains.h, so equal input gives equal
+// cells.
+#ifndef CRAQUELURE_PORE_CELLS_H
+#define CRAQUELURE_PORE_CELLS_H
 
-#include "grains.h"
+#include "network/cell_grains.h"
 
 // A tetrahedron, positively oriented. Where the box repeats it stands for all its
 // copies, and corners and neighbours may lie in other images.
