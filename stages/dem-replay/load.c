@@ -9,7 +9,7 @@
 bool is_loaded(const struct load *load, int n, int step)
 {
     const struct vector *force = load->force + (size_t)step * (size_t)n;
-    if (load->shrinks) return true;
+    if (load->shrinks || load->drains) return true;
     for (int i = 0; i < n; i++)
         if (norm(force[i]) > 0) return true;
     return false;

@@ -157,19 +157,24 @@ static bool is_packing(const struct artifact *input)
     return !strcmp(input->schema->name, "packing");
 }
 
-// A load without forces, under which a packing only shrinks: n rows a second apart, of
-// saturations from (n-1)/n to 0, so that the first row has shrunk already.
-static struct load shrinking_load(const struct artifact *input,
-                                  const struct replay_parameters *parameters,
-                                  int n_particle)
+// A load without forces, under which a packing only shrinks or drains: n rows a second
+// apart, of saturations from (n-1)/n to 0, so that the first row has shrunk already.
+// The saturations of one that drains are found on the way.
+static struct load load_without_forces(const struct artifact *input,
+                                       const struct replay_parameters *parameters,
+                                       int n_particle)
 {
-    const int n = (int)parameters->shrinkage_steps;
-    if (!(parameters->settings.shrinkage.strain > 0))
+    const struct capillarity *drains = &parameters->settings.capillarity;
+    const int n =
+        (int)(drains->suction > 0 ? drains->steps : parameters->shrinkage_steps);
+    if (!(parameters->settings.shrinkage.strain > 0) && !(drains->suction > 0))
         die(STATUS_BAD_DATA,
             "%s: is a packing, without forces: first run tessellate, merge-nodes, dry "
-            "and force-protocol, or let it shrink (dem-replay.shrinkage.strain)",
+            "and force-protocol, or let it shrink (dem-replay.shrinkage.strain) or "
+            "drain (dem-replay.capillary.suction)",
             input_name(input->path));
     struct load load = {.n_time = n,
+                        .drains = drains->suction > 0,
                         .time = NEW_ARRAY(double, n),
                         .saturation = NEW_ARRAY(double, n),
                         .force =
@@ -181,6 +186,26 @@ static struct load shrinking_load(const struct artifact *input,
     return load;
 }
 
+// Menisci follow one packing from its beginning, in one piece.
+static void check_drains(const struct artifact *input,
+                         const struct replay_parameters *parameters,
+                         const struct invocation *invocation)
+{
+    if (!(parameters->settings.capillarity.suction > 0)) return;
+    if (!is_packing(input))
+        die(STATUS_BAD_DATA,
+            "%s: holds forces: with capillary.suction dem-replay drains a packing "
+            "itself, and takes that",
+            input_name(input->path));
+    if (invocation->n_input > 1 || parameters->settings.keep_state)
+        die(STATUS_BAD_DATA, "dem-replay.capillary.suction: must be 0 with keep_state "
+                             "or the response of "
+                             "an earlier replay: what pores hold is not kept");
+    if (invocation->checkpoint)
+        die(STATUS_USAGE, "--checkpoint: cannot be used with capillary.suction: what "
+                          "pores hold is not kept");
+}
+
 // The caller frees it with free_load.
 static struct load read_load(const struct artifact *input,
                              const struct replay_parameters *parameters, int n_particle)
@@ -188,7 +213,7 @@ static struct load read_load(const struct artifact *input,
     const struct shrinkage *how = &parameters->settings.shrinkage;
     struct load load = {0};
     if (is_packing(input))
-        load = shrinking_load(input, parameters, n_particle);
+        load = load_without_forces(input, parameters, n_particle);
     else {
         load.time = artifact_get(input, "/time", &load.n_time);
         load.saturation = artifact_get(input, "/saturation", NULL);
@@ -196,6 +221,10 @@ static struct load read_load(const struct artifact *input,
     }
     load.shrinks = how->strain > 0;
     if (!load.shrinks || how->law != SHRINKAGE_LIQUID) return load;
+    if (load.drains) {
+        load.dryness = NEW_ARRAY(double, (size_t)load.n_time *(size_t)n_particle);
+        return load;
+    }
     if (is_packing(input) || !artifact_has_dataset(input, "/liquid_mass"))
         die(STATUS_BAD_DATA,
             "%s: /liquid_mass: is not there, which shrinkage.law=liquid needs: run "
@@ -294,6 +323,18 @@ static void describe_shrinkage(const struct shrinkage *how, char text[200])
              how->strain, by[how->law]);
 }
 
+static void describe_drainage(const struct capillarity *how, char text[300])
+{
+    static const char *const controls[] = {"rises to",
+                                           "is what evaporation needs, at most"};
+    static const char *const of[] = {"present", "first"};
+    snprintf(
+        text, 300,
+        "liquid in the pores of the packing: one suction, which %s %.6g Pa; menisci "
+        "pull on the %s facets, gas enters throats of the %s width\n",
+        controls[how->control], how->suction, of[how->forces], of[how->throats]);
+}
+
 // The times of the first drying period go along, for crackstats.
 static void write_response(const struct packing *packing, const struct load *load,
                            const struct replay_settings *settings,
@@ -304,8 +345,8 @@ static void write_response(const struct packing *packing, const struct load *loa
 {
     static const char *const supports[] = {"free, net force and moment taken off",
                                            "%d grains held", "a rigid wall beneath"};
-    char engine[200], support[60], weights[200], bridges[200] = "", model[1700];
-    char shrinkage[200] = "";
+    char engine[200], support[60], weights[200], bridges[200] = "", model[2000];
+    char shrinkage[200] = "", drainage[300] = "";
     replay_engine(settings)->describe(settings, engine, sizeof engine);
     int n_held = 0;
     for (int i = 0; i < packing->n_particle; i++)
@@ -318,19 +359,20 @@ static void write_response(const struct packing *packing, const struct load *loa
                  settings->liquid.surface_tension,
                  settings->liquid.contact_angle * (180 / M_PI));
     if (load->shrinks) describe_shrinkage(&settings->shrinkage, shrinkage);
+    if (load->drains) describe_drainage(&settings->capillarity, drainage);
     snprintf(model, sizeof model,
              "%s\n"
              "engine: %s, %s\n"
              "%s"
              "support: %s\n"
              "overlaps of the packing %s\n"
-             "%s%s%s%s"
+             "%s%s%s%s%s"
              "left out: %s%smoments of capillary forces\n",
              engine, settings->engine == ENGINE_EXPLICIT ? "explicit" : "quasi-static",
              settings->engine_reason, describe_loose(settings), support,
              settings->unstressed ? "lie at rest" : "push from the start",
              settings->begin ? "goes on from where an earlier replay ended\n" : "",
-             shrinkage, bridges, describe_weight(weight, weights),
+             shrinkage, drainage, bridges, describe_weight(weight, weights),
              weight->gravity > 0 ? "" : "gravity, ",
              settings->liquid.volume > 0 ? "" : "liquid bridges at contacts, ");
     struct artifact *artifact = artifact_create("response", invocation->output);
@@ -466,6 +508,7 @@ int main(int argc, char **argv)
     complete_settings(&parameters, invocation.threads);
     if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = open_input(invocation.inputs[0]);
+    check_drains(input, &parameters, &invocation);
     choose_bridges(&parameters, input, invocation.quiet);
     struct packing packing = artifact_get_packing(input);
     check_sizes(&packing, input->path);

@@ -123,6 +123,45 @@ const struct parameter replay_table[] = {
      BETWEEN(1, 1e6),
      .text = "steps of a load without forces, where the input is a packing: saturation "
              "falls evenly to 0, a step a second"},
+    {"capillary.suction", PARAMETER_NUMBER, "Pa", "0", AT(settings.capillarity.suction),
+     AT_LEAST(0),
+     .text = "explicit: the largest suction of liquid in the pores of a packing, which "
+             "gas enters from the upper z side as grains move and bonds break; menisci "
+             "pull at the grains where they are; 0: none"},
+    {"capillary.control", PARAMETER_CHOICE, "1", "\"suction\"", AT(capillary_control),
+     .choices = "suction|evaporation",
+     .text =
+         "suction: it rises evenly, and gas enters what it can; evaporation: liquid "
+         "goes evenly from the widest throats, and the suction is what they need"},
+    {"capillary.steps", PARAMETER_INTEGER, "1", "40", AT(settings.capillarity.steps),
+     BETWEEN(1, 1e6), .text = "of the load, a second each"},
+    {"capillary.evaporated", PARAMETER_NUMBER, "1", "0.8",
+     AT(settings.capillarity.last_drained), BETWEEN(1e-6, 1),
+     .text =
+         "control=evaporation: share of the liquid that pores lose to gas by the end"},
+    {"capillary.round", PARAMETER_INTEGER, "1", "64", AT(settings.capillarity.round),
+     BETWEEN(1, 1e12),
+     .text =
+         "most time steps between two entries of gas; less where the body is at rest "
+         "(control=suction)"},
+    {"capillary.rounds", PARAMETER_INTEGER, "1", "32", AT(settings.capillarity.rounds),
+     BETWEEN(1, 1e6),
+     .text = "control=evaporation: entries of gas in a step of the load"},
+    {"capillary.forces", PARAMETER_CHOICE, "1", "\"present\"", AT(capillary_forces),
+     .choices = "present|first",
+     .text = "menisci pull on the facets between the grains as they are, or (one way) "
+             "as they were at first"},
+    {"capillary.throats", PARAMETER_CHOICE, "1", "\"present\"", AT(capillary_throats),
+     .choices = "present|first",
+     .text =
+         "gas enters throats as wide as grains have left them, or (one way) as they "
+         "were at first"},
+    {"capillary.surface_tension", PARAMETER_NUMBER, "N m-1", "null",
+     AT(pore_liquid.surface_tension), ABOVE(0), .shared = true,
+     .text = "of the liquid in the pores; null: that of water at 293.15 K"},
+    {"capillary.contact_angle", PARAMETER_NUMBER, "degree", "null",
+     AT(pore_liquid.contact_angle), BETWEEN(0, 89.999), .shared = true,
+     .text = "of the liquid in the pores; null: 0"},
     {"support", PARAMETER_CHOICE, "1", "\"fixed\"", AT(support),
      .choices = "free|fixed|wall",
      .text = "free: net force and moment are removed; fixed: the grains of held "
@@ -287,15 +326,17 @@ static bool suits_equilibria(const struct replay_settings *settings,
     return !(settings->material.friction > 0) && settings->support == SUPPORT_FIXED &&
            settings->bond.kind == DEM_PARALLEL_BOND && settings->unstressed &&
            !(settings->liquid.volume > 0) && packing->n_bond > 0 &&
-           !(settings->shrinkage.strain > 0) && packing->n_particle <= MOST_GRAINS;
+           !(settings->shrinkage.strain > 0) && !(settings->capillarity.suction > 0) &&
+           packing->n_particle <= MOST_GRAINS;
 }
 
 // For the provenance: which of the reasons it was.
 static const char *why_cycles(const struct replay_settings *settings)
 {
-    return settings->material.friction > 0 ? "contacts have friction"
-           : settings->shrinkage.strain > 0
-               ? "grains shrink"
+    return settings->material.friction > 0  ? "contacts have friction"
+           : settings->shrinkage.strain > 0 ? "grains shrink"
+           : settings->capillarity.suction > 0
+               ? "liquid drains from the pores"
                : "bonds, support, liquid bridges or the number of grains do not suit "
                  "equilibria";
 }
@@ -322,6 +363,20 @@ void choose_engine(const struct replay_parameters *parameters,
     if (status) die(status, "%s", reason.text);
 }
 
+static void complete_capillarity(struct replay_parameters *parameters)
+{
+    struct capillarity *how = &parameters->settings.capillarity;
+    const struct liquid_properties water = {
+        .surface_tension =
+            fluid_value(FLUID_WATER, FLUID_SURFACE_TENSION, 293.15, 1e5)};
+    liquid_complete(&parameters->pore_liquid, &water);
+    how->tension = parameters->pore_liquid.surface_tension *
+                   cos(parameters->pore_liquid.contact_angle * (M_PI / 180));
+    how->control = (enum capillary_control)parameters->capillary_control;
+    how->forces = (enum geometry_of)parameters->capillary_forces;
+    how->throats = (enum geometry_of)parameters->capillary_throats;
+}
+
 void complete_settings(struct replay_parameters *parameters, int threads)
 {
     struct replay_settings *settings = &parameters->settings;
@@ -333,6 +388,7 @@ void complete_settings(struct replay_parameters *parameters, int threads)
     settings->shrinkage.law = (enum shrinkage_law)parameters->shrinkage_law;
     settings->liquid.model = (enum bridge_model)parameters->bridge_model;
     choose_bonds(parameters, settings);
+    complete_capillarity(parameters);
     settings->n_snapshot = parameters->snapshots.count;
     settings->snapshot = parameters->snapshots.value;
     settings->threads = threads;

@@ -16,10 +16,11 @@
 struct replay_parameters {
     struct replay_settings settings;        // completed by the functions below
     struct liquid_properties bridge_liquid; // tension and angle
+    struct liquid_properties pore_liquid;   // the same, with capillary.suction
     struct fixed_grains held;               // with support=fixed
     struct strength_scatter scatter;        // its law is strength_law
     int support, engine, loose, unsettled, bond, bonds_by, strength_law, bridge_model,
-        shrinkage_law;
+        shrinkage_law, capillary_control, capillary_forces, capillary_throats;
     bool prestress; // overlaps of the packing push from the start
     double bond_gap, contact_strength, moment_contribution, gravity;
     double substrate_strength;    // factor on bonds of a held grain to one that is not

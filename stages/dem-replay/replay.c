@@ -209,6 +209,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         .reaction = NEW_ARRAY(struct net_load, load->n_time),
         .weight_unbalanced_ratio = NAN,
         .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
+    if (load->drains) response->drainage = drainage_history_init(load->n_time);
     struct run run = {.packing = packing,
                       .load = load,
                       .settings = settings,
@@ -240,6 +241,7 @@ void response_free(struct response *response)
         free(response->snapshot[k].force);
         free(response->snapshot[k].intact);
         free(response->snapshot[k].contact);
+        free(response->snapshot[k].dryness);
     }
     free(response->snapshot);
     free(response->crack);
@@ -250,6 +252,7 @@ void response_free(struct response *response)
     free(response->settled);
     free(response->reaction);
     free(response->weight_crack);
+    drainage_history_free(&response->drainage);
     free_arrays(response->engine.array, response->engine.count);
     *response = (struct response){0};
 }

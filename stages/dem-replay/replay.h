@@ -4,6 +4,7 @@
 #define CRAQUELURE_REPLAY_H
 
 #include "basics/status.h"
+#include "capillarity.h"
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
 #include "geometry/net_load.h"
@@ -43,18 +44,21 @@ struct load {
     struct vector *force;      // (n_time * n_particle) N
     double *dryness;           // (n_time * n_particle) of each grain; NULL: not known
     bool shrinks; // grains shrink under it: it acts also where it has no force
+    bool drains;  // gas enters pores, likewise; rows of .saturation and .dryness are
+                  // filled in as the replay comes to them
 };
 
 // How to replay. It owns nothing: arrays must outlive the replay.
 struct replay_settings {
     struct dem_material material;
     struct dem_bond_material bond;
-    double *relative_strength;  // (n_bond) of those of `bond`; NULL: 1
-    uint8_t *held;              // (n_particle) 1: neither moves nor turns
-    struct dem_liquid liquid;   // of no volume: none
-    bool tensile_damping;       // dashpots may pull grains that part
-    bool unstressed;            // overlaps of the packing do not push
-    struct shrinkage shrinkage; // explicit; it owns nothing
+    double *relative_strength;      // (n_bond) of those of `bond`; NULL: 1
+    uint8_t *held;                  // (n_particle) 1: neither moves nor turns
+    struct dem_liquid liquid;       // of no volume: none
+    bool tensile_damping;           // dashpots may pull grains that part
+    bool unstressed;                // overlaps of the packing do not push
+    struct shrinkage shrinkage;     // explicit; it owns nothing
+    struct capillarity capillarity; // explicit; of no suction: none
     enum support support;
     enum engine engine;
     const char *engine_reason;    // why this one
@@ -93,6 +97,8 @@ struct snapshot {
     uint8_t *intact;             // (n_bond)
     struct dem_contact *contact; // (n_contact)
     int n_contact;
+    double *dryness; // (n_particle) share of the pores around it that gas has entered;
+                     // NULL: not known
 };
 
 // What came out of a replay; it owns its arrays, freed with response_free. Rows
@@ -118,6 +124,7 @@ struct response {
                            // and the grain furthest from it under the last
     int n_instability, instability_grain; // ends of equilibrium gone through in time,
                                           // and the grain that moved most at the last
+    struct drainage_history drainage;     // NULL without capillarity
     struct array_list engine; // at the end, if it was to be kept; quasi-static: all
                               // loads up to there
     int n_weight_crack;       // before drying, under the weight alone

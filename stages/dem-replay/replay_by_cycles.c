@@ -27,11 +27,17 @@ struct by_cycles {
     struct loose_grains loose; // none if they keep their loads
     bool has_looked;           // whether they have been found
     int n_crack;               // cracks at that time
+    struct drainage drainage;  // where load->drains
 };
 
 static struct dem *dem_of(const struct run *run)
 {
     return ((const struct by_cycles *)run->state)->dem;
+}
+
+static struct drainage *drainage_of(const struct run *run)
+{
+    return &((struct by_cycles *)run->state)->drainage;
 }
 
 static struct loose_grains *loose_of(const struct run *run)
@@ -53,6 +59,15 @@ static enum status check(const struct replay_settings *settings, struct reason *
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.shrinkage.strain: must be 0 with liquid bridges "
                       "(bridges.volume), which do not follow grains that shrink");
+    if (!(settings->capillarity.suction > 0)) return STATUS_OK;
+    if (settings->liquid.volume > 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.bridges.volume: must be 0 where capillary.suction "
+                      "fills the pores with liquid");
+    if (settings->shrinkage.strain > 0 && settings->shrinkage.law != SHRINKAGE_LIQUID)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.shrinkage.law: must be liquid where "
+                      "capillary.suction drains the pores");
     return STATUS_OK;
 }
 
@@ -122,7 +137,10 @@ static enum status begin(struct run *run, struct reason *reason)
     struct by_cycles *state = run->state = NEW_ARRAY(struct by_cycles, 1);
     state->loose = loose_init(run->packing->n_particle);
     run->is_whole = run->settings->weight && !run->settings->begin;
-    const enum status status = create(run, &state->dem, reason);
+    enum status status = create(run, &state->dem, reason);
+    if (!status && run->load->drains)
+        status = drainage_begin(&state->drainage, &run->settings->capillarity,
+                                run->packing, reason);
     const struct array_list *earlier = run->settings->begin;
     if (status || !earlier) return status;
     if (saved_by_equilibria(earlier))
@@ -144,6 +162,9 @@ static enum status begin(struct run *run, struct reason *reason)
 // (their kinetic energy grows with the square of this number).
 enum { TAKE_OFF_EVERY = 16, STOP_EVERY = 64 }; // cycles
 
+// Menisci follow the grains as often: these move by a small part of a throat meanwhile.
+enum { FOLLOW_EVERY = 16 };
+
 // Whether loose grains are unloaded. Without bonds nothing can come loose, and liquid
 // bridges hold loose grains.
 static bool unloads(const struct run *run)
@@ -155,6 +176,7 @@ static bool unloads(const struct run *run)
 // Cycles after which the load is adapted to the grains again.
 static int64_t load_holds(const struct run *run)
 {
+    if (run->load->drains) return FOLLOW_EVERY;
     if (run->load->shrinks && run->settings->support != SUPPORT_FREE) return STOP_EVERY;
     if (run->settings->support == SUPPORT_FREE) return TAKE_OFF_EVERY;
     return unloads(run) ? STOP_EVERY : INT64_MAX;
@@ -268,6 +290,8 @@ static void apply_forces(struct run *run)
     shrink(run);
     take_forces(run);
     grow(run);
+    if (run->load->drains && run->place.step >= 0)
+        add_capillary_forces(drainage_of(run), dem_of(run), run->force);
     follow_loose(run);
     if (loose_of(run)->n_loose > 0) take_off_loose(run);
     if (run->settings->support == SUPPORT_FREE) take_off(run);
@@ -355,6 +379,60 @@ static enum status run_on(struct run *run, struct reason *reason)
                   (long long)settings->most_cycles);
 }
 
+// ---- drainage -----------------------------------------------------------------------
+
+// Rows of the load are known when they begin: grains shrink by the liquid left by then.
+static void begin_drainage(struct run *run)
+{
+    const struct capillarity *how = &run->settings->capillarity;
+    struct drainage *drainage = drainage_of(run);
+    const int row = run->place.step;
+    const size_t n = (size_t)run->packing->n_particle;
+    const int64_t now = dem_cycle(dem_of(run));
+    run->load->saturation[row] = row > 0 ? run->load->saturation[row - 1] : 1;
+    if (run->load->dryness)
+        find_dryness(&drainage->liquid, run->load->dryness + (size_t)row * n);
+    aim_at_volume(drainage, row);
+    if (how->control == CONTROL_SUCTION)
+        aim_at_suction(drainage, how->suction * (row + 1) / (double)how->steps, now,
+                       ramp(run) + run->settings->cycles);
+    drainage->round_began = drainage->entered = now + ramp(run) + run->settings->cycles;
+}
+
+// The body rests, or a round is over; then gas enters what has opened; and so on until
+// none does, and the body rests or has had the cycles for it. By evaporation until the
+// step has lost its liquid. While the suction changes nothing rests.
+static enum status drain(struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    struct drainage *drainage = drainage_of(run);
+    const bool dries = settings->capillarity.control == CONTROL_EVAPORATION;
+    for (;;) {
+        const bool changes = dem_cycle(dem_of(run)) < drainage->until;
+        const double rest = changes ? 0 : ratio_at_rest(settings);
+        const enum status status = settle(run, drainage->round_began, rest,
+                                          settings->capillarity.round, reason);
+        if (status) return status;
+        const int64_t now = dem_cycle(dem_of(run));
+        const bool rests = unbalanced_ratio(run) < rest ||
+                           now - drainage->entered >= settings->most_cycles;
+        const bool is_done = dries && has_evaporated(drainage);
+        if (!(!is_done && enter_gas(drainage, dem_of(run)) > 0) && rests)
+            return STATUS_OK;
+        drainage->round_began = now;
+        apply_forces(run);
+    }
+}
+
+// The saturation never rises: what flows back as pores open is left out of it.
+static void note_row(struct run *run)
+{
+    const int row = run->place.step;
+    double *saturation = &run->load->saturation[row];
+    *saturation = fmin(*saturation, note_drainage(drainage_of(run), dem_of(run), row,
+                                                  &run->response->drainage));
+}
+
 // ---- weight -------------------------------------------------------------------------
 
 // Local damping for coming to rest, as large as the time step, chosen for less, allows.
@@ -411,7 +489,9 @@ static enum status advance(struct run *run, struct reason *reason)
         dem_set_local_damping(dem_of(run), run->settings->material.local_damping);
     const int64_t full = run->place.began + ramp(run);
     enum status status = STATUS_OK;
-    if (dem_cycle(dem_of(run)) == run->place.began) apply_forces(run);
+    const bool begins = dem_cycle(dem_of(run)) == run->place.began;
+    if (begins && run->load->drains) begin_drainage(run);
+    if (begins) apply_forces(run);
     while (!status && dem_cycle(dem_of(run)) < full) {
         apply_forces(run);
         status = run_cycles(run, 1, reason);
@@ -420,7 +500,10 @@ static enum status advance(struct run *run, struct reason *reason)
     if (!status) status = run_cycles(run, left, reason);
     if (!status && dem_cycle(dem_of(run)) == full + run->settings->cycles)
         shrink_to(run, 1);
-    return status ? status : run_on(run, reason);
+    if (status || !run->load->drains) return status ? status : run_on(run, reason);
+    status = drain(run, reason);
+    if (!status) note_row(run);
+    return status;
 }
 
 // ---- observations -------------------------------------------------------------------
@@ -446,6 +529,9 @@ static void observe(const struct run *run, struct snapshot *snapshot)
     dem_displacements(dem_of(run), snapshot->displacement);
     dem_bonds_intact(dem_of(run), snapshot->intact);
     snapshot->contact = dem_contacts(dem_of(run), &snapshot->n_contact);
+    if (!run->load->drains) return;
+    snapshot->dryness = NEW_ARRAY(double, run->packing->n_particle);
+    find_dryness(&drainage_of(run)->liquid, snapshot->dryness);
 }
 
 static struct array_list save(const struct run *run)
@@ -476,6 +562,7 @@ static void end(struct run *run)
     run->response->n_detached = state->loose.n_loose;
     run->response->first_detached = state->loose.first_one;
     loose_free(&state->loose);
+    drainage_free(&state->drainage);
     dem_free(state->dem);
     free(state);
 }

@@ -37,6 +37,10 @@ static enum status check(const struct replay_settings *settings, struct reason *
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.shrinkage.strain: equilibria do not shrink: use "
                       "engine=explicit");
+    if (settings->capillarity.suction > 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "dem-replay.capillary.suction: equilibria do not drain: use "
+                      "engine=explicit");
     return STATUS_OK;
 }
 

@@ -72,6 +72,19 @@ static void put_history(struct artifact *artifact, const struct load *load,
     free(moment);
 }
 
+static void put_drainage(struct artifact *artifact, const struct load *load,
+                         const struct drainage_history *drainage)
+{
+    if (!load->drains) return;
+    const int n = load->n_time;
+    artifact_put(artifact, "/history/suction", drainage->suction, n);
+    artifact_put(artifact, "/history/liquid_volume", drainage->liquid, n);
+    artifact_put(artifact, "/history/drained_volume", drainage->drained, n);
+    artifact_put(artifact, "/history/lateral_tension", drainage->lateral_tension, n);
+    artifact_put(artifact, "/history/gas_pores", drainage->gas_pores, n);
+    artifact_put(artifact, "/history/distorted_pores", drainage->distorted, n);
+}
+
 static void put_settings(struct artifact *artifact, const struct packing *packing,
                          const struct replay_settings *settings)
 {
@@ -218,6 +231,19 @@ static void put_snapshots(struct artifact *artifact, const struct packing *packi
     free(intact);
 }
 
+static void put_dryness(struct artifact *artifact, const struct packing *packing,
+                        const struct response *response)
+{
+    const size_t n = (size_t)packing->n_particle;
+    const int count = response->n_snapshot;
+    double *dryness = NEW_ARRAY(double, (size_t)count *n);
+    for (int s = 0; s < count; s++)
+        memcpy(dryness + (size_t)s * n, response->snapshot[s].dryness,
+               n * sizeof *dryness);
+    artifact_put_table(artifact, "/snapshots/dryness", dryness, count, (int)n);
+    free(dryness);
+}
+
 // Of snapshots only; from the places where grains began.
 double largest_displacement(const struct packing *packing,
                             const struct response *response)
@@ -247,10 +273,12 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     put_settings(artifact, packing, settings);
     put_cracks(artifact, load, response);
     put_history(artifact, load, response);
+    put_drainage(artifact, load, &response->drainage);
     struct contact_list contacts = all_contacts(packing, response);
     put_contacts(artifact, response, &contacts, settings->liquid.volume > 0);
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
+    if (load->drains) put_dryness(artifact, packing, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
     artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",

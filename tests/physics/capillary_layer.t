@@ -1,0 +1,122 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# A layer that gas drains from above while its grains move (capillary.suction), against
+# closed forms. In a cubic lattice of touching grains of radius R that repeats sideways,
+# menisci in its top facets pull every column down with P (2 R)^2 and nothing sideways;
+# the liquid carries the lateral tension P; every throat has the radius (sqrt 2 - 1) R, so
+# that gas enters all pores or none; and these hold 1 - pi/6 of their volume.
+import json
+import math
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, done, ok, run, scratch
+
+RADIUS, SIDE, TENSION = 0.26e-6, 6, 0.07
+ENTRY = 2 * TENSION / ((math.sqrt(2) - 1) * RADIUS)
+PACK = {"method": "cubic", "radius": RADIUS, "counts": [SIDE, SIDE, SIDE],
+        "periodic": [True, True, False]}
+REPLAY = {"density": 2500, "normal_stiffness": 1e4, "shear_stiffness": 1e4,
+          "bond": {"normal_stiffness": 1e17, "shear_stiffness": 4e16,
+                   "normal_strength": 1e12, "shear_strength": 1e12},
+          "capillary": {"suction": 0.98 * ENTRY, "steps": 2, "surface_tension": TENSION},
+          "cycles": 512, "ramp": 0, "tolerance": 1e-7, "most_cycles": 4000,
+          "snapshots": [1]}
+
+
+def refused(status, *command):
+    process = subprocess.run([f"{BIN}/{command[0]}", *command[1:]], capture_output=True,
+                             text=True)
+    return process.returncode == status and process.stderr.count("\n") == 1
+
+
+def near(got, wanted, tolerance):
+    return np.max(np.abs(got - wanted)) <= tolerance * np.max(np.abs(wanted))
+
+
+with scratch() as folder:
+    def at(name):
+        return os.path.join(folder, name)
+
+    def replay(name, *settings, packing="layer.h5"):
+        sets = [word for setting in settings for word in ("-s", setting)]
+        run("dem-replay", "-q", "-p", at("layer.json"), *sets, at(packing), "-o", at(name))
+        return h5py.File(at(name))
+
+    with open(at("layer.json"), "w") as file:
+        json.dump({"pack": PACK, "dem-replay": REPLAY}, file)
+    run("pack", "-q", "-p", at("layer.json"), "-o", at("layer.h5"))
+
+    file = replay("full.h5")
+    suction = file["history/suction"][:]
+    ok(near(suction, np.array([0.49, 0.98]) * ENTRY, 1e-12), "suction rises evenly")
+    box = file["domain/upper"][:] - file["domain/lower"][:]
+    pores = (2 * RADIUS) ** 3 * SIDE * SIDE * (SIDE - 1)
+    room = (1 - math.pi / 6) * pores
+    ok((file["history/gas_pores"][:] == 0).all(), "below its entry pressure no gas enters")
+    ok(near(file["history/liquid_volume"][:], room, 1e-3), "the pores hold their void")
+    ok(near(file["history/lateral_tension"][:], suction * pores / box.prod(), 1e-3),
+       "the lateral tension is the suction")
+    pairs, place = file["contacts/particles"][:], file["particles/position"][:]
+    held = file["particles/held"][:]
+    force = file["snapshots/contact_force"][0]
+    free = (held[pairs] == 0).any(axis=1)
+    upright = np.abs(place[pairs[:, 0], 2] - place[pairs[:, 1], 2]) > RADIUS
+    column = suction[0] * (2 * RADIUS) ** 2
+    ok(near(np.linalg.norm(force[upright & free], axis=1), column, 1e-4),
+       "every column bears the suction on its top")
+    ok(np.abs(force[~upright & free]).max() < 1e-3 * column, "nothing pushes sideways")
+
+    file = replay("drained.h5", f"capillary.suction={2.04 * ENTRY}")
+    ok((file["history/saturation"][:] == [0, 0]).all() and
+       file["history/liquid_volume"][1] == 0, "above it gas enters all")
+    ok(near(file["history/drained_volume"][:], room, 1e-3), "which held what there was")
+    ok(near(file["history/lateral_tension"][:] + 1e6, 1e6, 1e-3), "and all load is gone")
+    ok(np.abs(file["snapshots/displacement"][-1]).max() < 1e-5 * RADIUS,
+       "the layer springs back")
+
+    file = replay("dries.h5", "capillary.control=evaporation", "capillary.evaporated=0.5",
+                  f"capillary.suction={2 * ENTRY}", "capillary.rounds=4")
+    drained = file["history/drained_volume"][:] / room
+    ok((drained >= [0.25, 0.5]).all() and (drained < [0.26, 0.51]).all(),
+       "evaporation takes its share in every step")
+    inside = (math.sqrt(2) - 1) / (math.sqrt(3) - 1) # a facet along a cube's long diagonal
+    off = np.abs(file["history/suction"][:][:, None] / ENTRY - [1, inside]).min(axis=1)
+    ok(off.max() < 0.01, "at the suction that throats need, outside or within cubes")
+
+    one_way = replay("first.h5", "capillary.forces=first", "capillary.throats=first")
+    ok(near(one_way["snapshots/displacement"][0],
+            replay("full.h5")["snapshots/displacement"][0], 1e-3),
+       "one way, nearly the same in a stiff layer")
+
+    # Grains shrink as the pores around them empty, but for the held floor.
+    strain = 1e-3
+    file = replay("shrinks.h5", f"capillary.suction={2.04 * ENTRY}", "capillary.steps=3",
+                  f"shrinkage.strain={strain}", "shrinkage.law=liquid", "snapshots=[0]")
+    ok((file["snapshots/dryness"][0] == 1).all(), "all pores are dry in the second step")
+    area = math.pi * (0.5858 * RADIUS) ** 2
+    ok(near(file["history/lateral_tension"][2],
+            1e17 * area * strain / (2 * RADIUS) * (SIDE - 1) / SIDE, 1e-3),
+       "in the third grains are dry, and bonds carry k A l e")
+
+    run("dem-replay", "-q", "-p", at("layer.json"), "--threads", "3", at("layer.h5"), "-o",
+        at("threads.h5"))
+    with open(at("threads.h5"), "rb") as a, open(at("full.h5"), "rb") as b:
+        ok(a.read() == b.read(), "the same bytes with three threads")
+
+    layer = ["dem-replay", "-p", at("layer.json")]
+    end = [at("layer.h5"), "-o", at("no.h5")]
+    ok(refused(65, *layer, "-s", "shrinkage.strain=0.01", *end), "another law of shrinkage: refused")
+    ok(refused(65, *layer, "-s", "engine=quasi-static", *end), "equilibria: refused")
+    ok(refused(65, *layer, "-s", "bridges.volume=1e-22", *end), "liquid bridges: refused")
+    ok(refused(65, *layer, "-s", "keep_state=true", *end), "a state to go on from: refused")
+    ok(refused(64, *layer, "--checkpoint", at("kept"), *end), "a checkpoint: refused")
+    run("pack", "-q", "-p", at("layer.json"), "-s", f"counts=[{SIDE},{SIDE},1]", "-o", at("flat.h5"))
+    ok(refused(65, *layer, "-s", "support=wall", at("flat.h5"), "-o", at("no.h5")),
+       "a layer of one grain has no pore: refused")
+done()
