@@ -139,11 +139,9 @@ const struct parameter replay_table[] = {
      AT(settings.capillarity.last_drained), BETWEEN(1e-6, 1),
      .text =
          "control=evaporation: share of the liquid that pores lose to gas by the end"},
-    {"capillary.round", PARAMETER_INTEGER, "1", "64", AT(settings.capillarity.round),
+    {"capillary.round", PARAMETER_INTEGER, "1", "32", AT(settings.capillarity.round),
      BETWEEN(1, 1e12),
-     .text =
-         "most time steps between two entries of gas; less where the body is at rest "
-         "(control=suction)"},
+     .text = "time steps between two entries of gas, of one pore each way"},
     {"capillary.rounds", PARAMETER_INTEGER, "1", "32", AT(settings.capillarity.rounds),
      BETWEEN(1, 1e6),
      .text = "control=evaporation: entries of gas in a step of the load"},
