@@ -57,21 +57,44 @@ static double opening(const struct run *run, int bond)
     return hypot(after.x, after.y) - hypot(before.x, before.y);
 }
 
+// Whether BOND is broken, lateral, and in a crack column.
+static bool is_in_crack(const struct pattern *pattern, const struct run *run,
+                        const uint8_t *intact, int bond)
+{
+    double length;
+    if (intact[bond] || !is_lateral(run, bond)) return false;
+    const int c = column_of_bond(&pattern->columns, run, bond, &length);
+    return pattern->damage[c] >= pattern->polygons.threshold;
+}
+
 static double crack_width(const struct pattern *pattern, const struct run *run,
                           const uint8_t *intact)
 {
     double *width = NEW_ARRAY(double, run->packing.n_bond);
     int n = 0;
-    for (int b = 0; run->n_snapshot > 0 && b < run->packing.n_bond; b++) {
-        double length;
-        if (intact[b] || !is_lateral(run, b)) continue;
-        const int c = column_of_bond(&pattern->columns, run, b, &length);
-        if (pattern->damage[c] >= pattern->polygons.threshold)
-            width[n++] = opening(run, b);
-    }
+    for (int b = 0; run->n_snapshot > 0 && b < run->packing.n_bond; b++)
+        if (is_in_crack(pattern, run, intact, b)) width[n++] = opening(run, b);
     const double found = median(width, n);
     free(width);
     return found;
+}
+
+// Mean dryness of the grains that bonds in cracks joined, at the last snapshot.
+static double crack_air(const struct pattern *pattern, const struct run *run,
+                        const uint8_t *intact)
+{
+    if (!run->dryness || run->n_snapshot == 0) return NAN;
+    const double *dryness =
+        run->dryness + (size_t)(run->n_snapshot - 1) * (size_t)run->packing.n_particle;
+    double sum = 0;
+    int n = 0;
+    for (int b = 0; b < run->packing.n_bond; b++) {
+        if (!is_in_crack(pattern, run, intact, b)) continue;
+        const int32_t *end = run->packing.bond[b];
+        sum += (dryness[end[0]] + dryness[end[1]]) / 2;
+        n++;
+    }
+    return n ? sum / n : NAN;
 }
 
 // ---- the floor ----------------------------------------------------------------------
@@ -134,6 +157,7 @@ static void note_shape(double *value, const struct pattern *pattern,
     value[POLYGONS_THROUGH] = p->through;
     value[POLYGONS_ISLANDS] = count_islands(columns, run, intact);
     value[POLYGONS_WIDTH] = crack_width(pattern, run, intact);
+    value[POLYGONS_AIR] = crack_air(pattern, run, intact);
     value[POLYGONS_OPENED] = p->border * value[POLYGONS_WIDTH] / box;
     free(area);
 }

@@ -10,7 +10,8 @@
 // rise, so one walk along them counts the cracks under loads that did not come to rest;
 // it needs check_cracks to have passed, or it would walk beyond the last load.
 //
-// Optional: /weight_cracks/bond (none), /particles/held (NULL: not known).
+// Optional: /weight_cracks/bond (none), /particles/held, /snapshots/dryness (NULL: not
+// known).
 #include "read.h"
 
 #include "basics/memory.h"
@@ -85,6 +86,8 @@ struct run read_run(const struct artifact *response)
         artifact_get(response, "/snapshots/saturation", &run.n_snapshot);
     run.displacement = artifact_get(response, "/snapshots/displacement", NULL);
     run.intact = artifact_get(response, "/snapshots/bond_intact", NULL);
+    if (artifact_has_dataset(response, "/snapshots/dryness"))
+        run.dryness = artifact_get(response, "/snapshots/dryness", NULL);
     read_unsettled(&run, response, time, n_time);
     free(time);
     return run;

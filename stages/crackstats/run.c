@@ -65,6 +65,7 @@ void run_free(struct run *run)
     free(run->held);
     free(run->snapshot_saturation);
     free(run->displacement);
+    free(run->dryness);
     free(run->intact);
     *run = (struct run){0};
 }

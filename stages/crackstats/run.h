@@ -24,7 +24,9 @@ struct run {
     int n_snapshot;
     double *snapshot_saturation; // (n_snapshot) of the network
     struct vector *displacement; // (n_snapshot, n_particle) m, since the start
-    uint8_t *intact;             // (n_snapshot, n_bond) 1: holds
+    double *dryness; // (n_snapshot, n_particle) share of the pores around each grain
+                     // that hold gas; NULL: not known
+    uint8_t *intact; // (n_snapshot, n_bond) 1: holds
 };
 
 // The periodic image of the second grain of BOND that is nearest to the first, by the

@@ -49,6 +49,7 @@ const struct statistic_name statistic_names[STATISTIC_COUNT] = {
     [POLYGONS_THROUGH] = {"polygons", "through"},
     [POLYGONS_ISLANDS] = {"polygons", "islands"},
     [POLYGONS_WIDTH] = {"polygons", "width"},
+    [POLYGONS_AIR] = {"polygons", "air"},
     [POLYGONS_OPENED] = {"polygons", "opened"},
     [JUNCTIONS_COUNT] = {"junctions", "count"},
     [JUNCTIONS_ANGLE] = {"junctions", "largest_angle"},

@@ -46,7 +46,8 @@ enum statistic {
     POLYGONS_LARGEST, // over the area of the box
     POLYGONS_THROUGH, // crack columns in sets that cut all heights
     POLYGONS_ISLANDS,
-    POLYGONS_WIDTH,  // m
+    POLYGONS_WIDTH, // m
+    POLYGONS_AIR, // share of the pores along crack walls that hold gas; NAN: not known
     POLYGONS_OPENED, // over the area of the box
     JUNCTIONS_COUNT,
     JUNCTIONS_ANGLE, // mean of the largest of each, degrees
