@@ -186,7 +186,7 @@ static struct load load_without_forces(const struct artifact *input,
     return load;
 }
 
-// Menisci follow one packing from its beginning, in one piece.
+// Menisci follow one packing from its beginning.
 static void check_drains(const struct artifact *input,
                          const struct replay_parameters *parameters,
                          const struct invocation *invocation)
@@ -201,9 +201,6 @@ static void check_drains(const struct artifact *input,
         die(STATUS_BAD_DATA, "dem-replay.capillary.suction: must be 0 with keep_state "
                              "or the response of "
                              "an earlier replay: what pores hold is not kept");
-    if (invocation->checkpoint)
-        die(STATUS_USAGE, "--checkpoint: cannot be used with capillary.suction: what "
-                          "pores hold is not kept");
 }
 
 // The caller frees it with free_load.

@@ -15,6 +15,7 @@
 
 #include "basics/memory.h"
 #include "dem/keep.h"
+#include "drainage_checkpoint.h"
 #include "loose.h"
 #include "support_reaction.h"
 
@@ -128,6 +129,10 @@ static enum status restore(struct run *run, const struct kept_state *kept,
     if (!status)
         status = restore_load(&kept->stage, run->packing->n_particle, run->force,
                               &run->taken_off, reason);
+    if (!status && run->load->drains)
+        status =
+            restore_drainage(&kept->stage, drainage_of(run), &run->response->drainage,
+                             run->load, run->packing->n_particle, reason);
     if (!status) dem_set_force(dem_of(run), run->force);
     return status;
 }
@@ -313,6 +318,9 @@ static void keep(const struct run *run)
     struct array_list list =
         save_response(run->response, run->packing, run->load->n_time, run->place);
     save_load(&list, run->force, run->packing->n_particle, run->taken_off);
+    if (run->load->drains)
+        save_drainage(&list, drainage_of(run), &run->response->drainage, run->load,
+                      run->packing->n_particle);
     keep_state(run->keeper, dem_of(run), list);
 }
 

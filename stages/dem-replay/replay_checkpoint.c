@@ -18,6 +18,7 @@
 //     snapshot_contacts (s)              how many of the c each has
 //     contact_particle (c, 2), _bond, _overlap (c), _force, _position (c, 3)
 //     contact_bridge (c, 2)              volume and force
+//     snapshot_dryness (s, n)            only where pores drain
 // save_load adds force (n, 3) and taken_off (6); save_loads makes load_force (rows, n,
 // 3). Units are SI. Arrays have no shapes in the file, only lengths, so each is read
 // with the length that it must have.
@@ -32,7 +33,8 @@
 // Numbers beyond LARGEST are no state of a run. MOST_CYCLES is the last whole number
 // before doubles have gaps.
 static const double LARGEST = 1e150, MOST_CYCLES = 0x1p53;
-static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge";
+static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge",
+                  dryness_name[] = "snapshot_dryness";
 
 // ---- out ----------------------------------------------------------------------------
 
@@ -62,6 +64,20 @@ static void save_snapshots(struct array_list *list, const struct response *respo
     free(displacement);
     free(force);
     free(intact);
+}
+
+// Only where pores drain: of all snapshots or of none.
+static void save_dryness(struct array_list *list, const struct response *response,
+                         const struct packing *packing)
+{
+    const size_t count = (size_t)response->n_snapshot;
+    const size_t n = (size_t)packing->n_particle;
+    if (count == 0 || !response->snapshot[0].dryness) return;
+    double *dryness = NEW_ARRAY(double, count *n);
+    for (size_t s = 0; s < count; s++)
+        memcpy(dryness + s * n, response->snapshot[s].dryness, n * sizeof *dryness);
+    add_array(list, dryness_name, ARRAY_FLOAT64, (int64_t)(count * n), dryness);
+    free(dryness);
 }
 
 // The contacts of all snapshots, one after the other.
@@ -150,6 +166,7 @@ struct array_list save_response(const struct response *response,
               !isnan(response->weight_unbalanced_ratio),
               &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
+    save_dryness(&list, response, packing);
     save_contacts(&list, response);
     return list;
 }
@@ -335,6 +352,21 @@ static enum status restore_snapshots(struct response *response,
     return STATUS_OK;
 }
 
+static enum status restore_dryness(struct response *response,
+                                   const struct packing *packing,
+                                   const struct load *load, struct array_reader *reader)
+{
+    const int64_t n = packing->n_particle;
+    if (!load->drains || response->n_snapshot == 0) return STATUS_OK;
+    const double *dryness =
+        read_array(reader, dryness_name, ARRAY_FLOAT64, response->n_snapshot * n, 0, 1);
+    if (!dryness) return STATUS_BAD_DATA;
+    for (int s = 0; s < response->n_snapshot; s++)
+        response->snapshot[s].dryness =
+            duplicate(dryness + s * n, (size_t)n, sizeof *dryness);
+    return STATUS_OK;
+}
+
 // The first row that is neither two grains, the lower first, nor a grain and a wall; N
 // if all are.
 static int64_t first_unordered(const int32_t (*particle)[2], int64_t n)
@@ -427,6 +459,7 @@ enum status restore_response(struct response *response, const struct packing *pa
         status = restore_cracks(response, load->n_time, past, &reader);
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
+    if (status == STATUS_OK) status = restore_dryness(response, packing, load, &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);
     return status;
 }

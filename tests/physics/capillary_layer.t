@@ -8,8 +8,10 @@
 import json
 import math
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import h5py
 import numpy as np
@@ -109,13 +111,43 @@ with scratch() as folder:
     with open(at("threads.h5"), "rb") as a, open(at("full.h5"), "rb") as b:
         ok(a.read() == b.read(), "the same bytes with three threads")
 
+    # A layer that cracks, shrinks and dries.
+    with open("samples/craquelure-40.json") as file:
+        scene = json.load(file)
+    scene["pack"]["upper"] = [2.6e-6, 2.6e-6, 2.6e-6]
+    scene["pack"]["slab"]["upper"] = 2.08e-6
+    scene["dem-replay"]["shrinkage"] = {"strain": 0.02, "law": "liquid"}
+    scene["dem-replay"]["capillary"] = {"suction": 4e6, "control": "evaporation", "steps": 6}
+    with open(at("random.json"), "w") as file:
+        json.dump(scene, file)
+    run("pack", "-q", "-p", at("random.json"), "-o", at("random.h5"))
+    cracking = ["dem-replay", "-q", "-p", at("random.json"), at("random.h5")]
+    began = time.monotonic()
+    run(*cracking, "-o", at("whole.h5"))
+    lasted = time.monotonic() - began
+    for _ in range(40):
+        process = subprocess.Popen([f"{BIN}/{cracking[0]}", *cracking[1:], "--checkpoint",
+                                    at("kept"), "-o", at("pieces.h5")],
+                                   stderr=subprocess.DEVNULL)
+        try:
+            process.wait(0.7 * lasted)
+            break
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGTERM)
+            process.wait()
+    with open(at("whole.h5"), "rb") as a, open(at("pieces.h5"), "rb") as b:
+        ok(a.read() == b.read(), "the same bytes in pieces")
+    file = h5py.File(at("whole.h5"))
+    ok(len(file["cracks/bond"]) > 0, "some bonds break")
+    tension = file["history/lateral_tension"][:]
+    ok(tension[:-1].max() > tension[-1] > 0, "the tension rises and falls")
+
     layer = ["dem-replay", "-p", at("layer.json")]
     end = [at("layer.h5"), "-o", at("no.h5")]
     ok(refused(65, *layer, "-s", "shrinkage.strain=0.01", *end), "another law of shrinkage: refused")
     ok(refused(65, *layer, "-s", "engine=quasi-static", *end), "equilibria: refused")
     ok(refused(65, *layer, "-s", "bridges.volume=1e-22", *end), "liquid bridges: refused")
     ok(refused(65, *layer, "-s", "keep_state=true", *end), "a state to go on from: refused")
-    ok(refused(64, *layer, "--checkpoint", at("kept"), *end), "a checkpoint: refused")
     run("pack", "-q", "-p", at("layer.json"), "-s", f"counts=[{SIDE},{SIDE},1]", "-o", at("flat.h5"))
     ok(refused(65, *layer, "-s", "support=wall", at("flat.h5"), "-o", at("no.h5")),
        "a layer of one grain has no pore: refused")
