@@ -110,15 +110,16 @@ static double portion(const struct drainage *drainage)
                 drainage->target - drainage->drained);
 }
 
-// Marks what evaporates in this round. Nothing does where the largest suction is too
-// small for it.
+// Marks what evaporates in this round: where the largest suction is too small for it,
+// what that suction drains.
 static void evaporate(struct drainage *drainage, const struct vector *at,
                       const double *radius, int64_t now, uint8_t *which)
 {
     const struct capillarity *how = drainage->how;
     const double narrowest =
         mark_widest(&drainage->liquid, at, radius, portion(drainage), which);
-    const double needed = narrowest > 0 ? 2 * how->tension / narrowest : how->suction;
+    if (!(narrowest > 0)) return;
+    const double needed = 2 * how->tension / narrowest;
     aim_at_suction(drainage, fmin(needed, how->suction), now, how->round);
     if (needed <= how->suction) return;
     for (int p = 0; p < drainage->liquid.n; p++)
@@ -141,13 +142,19 @@ static int drain(struct drainage *drainage, const uint8_t *which)
     return n;
 }
 
+// Where gas goes by, and what pores hold when it comes.
+static void look_at(struct drainage *drainage, const struct dem *dem)
+{
+    dem_positions(dem, drainage->at);
+    dem_radii(dem, drainage->radius);
+}
+
 int enter_gas(struct drainage *drainage, const struct dem *dem)
 {
     const struct capillarity *how = drainage->how;
     const int64_t now = dem_cycle(dem);
     const bool present = how->throats == GEOMETRY_PRESENT;
-    dem_positions(dem, drainage->at);
-    dem_radii(dem, drainage->radius);
+    look_at(drainage, dem);
     const struct vector *at = present ? drainage->at : drainage->first;
     const double *radius = present ? drainage->radius : drainage->first_radius;
     uint8_t *which = NEW_ARRAY(uint8_t, drainage->liquid.n);
@@ -156,12 +163,20 @@ int enter_gas(struct drainage *drainage, const struct dem *dem)
     else if (suction_at(drainage, now) > 0)
         mark_entered(&drainage->liquid, at, radius,
                      2 * how->tension / suction_at(drainage, now), which);
-    drainage->n_distorted += mark_distorted(&drainage->liquid, drainage->at, which);
     const int n = drain(drainage, which);
     free(which);
     drainage->round_began = now;
     if (n > 0) drainage->entered = now;
     return n;
+}
+
+void empty_distorted(struct drainage *drainage, const struct dem *dem)
+{
+    uint8_t *which = NEW_ARRAY(uint8_t, drainage->liquid.n);
+    look_at(drainage, dem);
+    drainage->n_distorted += mark_distorted(&drainage->liquid, drainage->at, which);
+    drain(drainage, which);
+    free(which);
 }
 
 void aim_at_volume(struct drainage *drainage, int row)

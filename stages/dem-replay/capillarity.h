@@ -75,10 +75,12 @@ double suction_at(const struct drainage *drainage, int64_t now);
 void add_capillary_forces(const struct drainage *drainage, const struct dem *dem,
                           struct vector *force);
 
-// Gas enters pores, each beside where it is, and those that are no longer pores. By
-// evaporation as many as hold the liquid of a round, and the suction follows. Returns
-// how many.
+// Gas enters pores, each beside where it is; by evaporation as many as hold the liquid
+// of a round, and the suction follows. Returns how many.
 int enter_gas(struct drainage *drainage, const struct dem *dem);
+
+// Gas takes the pores that have turned inside out or burst (mark_distorted).
+void empty_distorted(struct drainage *drainage, const struct dem *dem);
 
 // By evaporation: what the end of ROW should have taken, and whether it is taken.
 void aim_at_volume(struct drainage *drainage, int row);

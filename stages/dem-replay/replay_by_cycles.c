@@ -397,6 +397,7 @@ static void begin_drainage(struct run *run)
     const int row = run->place.step;
     const size_t n = (size_t)run->packing->n_particle;
     const int64_t now = dem_cycle(dem_of(run));
+    empty_distorted(drainage, dem_of(run));
     run->load->saturation[row] = row > 0 ? run->load->saturation[row - 1] : 1;
     if (run->load->dryness)
         find_dryness(&drainage->liquid, run->load->dryness + (size_t)row * n);

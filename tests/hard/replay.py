@@ -172,3 +172,38 @@ def equal_times(scene):
     write_forces(scene, [0, 1, 1, 2], np.zeros((4, 2, 3)))
     scene.refused("dem-replay", 65, "/time: row 2: must be > 1, got 1", *QUASI_STATIC)
     return scene.refused("dem-replay", 65, "/time: row 2: must be > 1, got 1")
+
+
+@case("capillary")
+def capillary(scene):
+    scene.stages("pack")
+    never, always = "bond.normal_strength=1e15", "bond.normal_strength=1"
+
+    def softer(times):
+        return [f"{key}={value / times}" for key, value in {
+            "normal_stiffness": 20, "shear_stiffness": 10, "bond.normal_stiffness": 2.2e14,
+            "bond.shear_stiffness": 8.8e13}.items()]
+
+    words = [word for setting in softer(30) for word in ("--set", setting)]
+    scene.refused("dem-replay", 3, r"step \d+ of the load .* diverged in cycle", "-q", *words, input=scene.at("pack"))
+    kinds = {"soft": softer(5), "no bonds": ["bond.by=none"],
+             "never": [never, "bond.shear_strength=1e15"], "always": [always, "bond.shear_strength=1"]}
+    said = []
+    for kind, settings in kinds.items():
+        status, message = scene.try_stage("dem-replay", *(word for s in settings for word in ("--set", s)),
+                                          input=scene.at("pack"))
+        must(status == 0, f"{kind}: exit {status}: {message}")
+        saturation, liquid, drained = (scene.get("dem-replay", f"history/{name}") for name in
+                                       ("saturation", "liquid_volume", "drained_volume"))
+        moved = scene.get("dem-replay", "snapshots/displacement")
+        must(np.isfinite(moved).all() and (np.diff(saturation) <= 0).all(), f"{kind}: saturation {saturation}")
+        first = liquid[0] / saturation[0]
+        must((liquid + drained < 1.02 * first).all(), f"{kind}: liquid is made")
+        far = np.linalg.norm(moved, axis=2).max() > 0.312e-6
+        must(far == ("moved by more than the largest radius" in message), f"{kind}: says {message!r}")
+        broken = len(scene.get("dem-replay", "cracks/bond"))
+        bonds = len(scene.get("dem-replay", "bonds/particles"))
+        must(broken == {"never": 0, "no bonds": 0}.get(kind, broken), f"{kind}: {broken} bonds broke")
+        must(kind != "always" or broken > 0.8 * bonds, f"{kind}: {broken} of {bonds} broke")
+        said.append(f"{kind}: to {saturation[-1]:.2f}, {broken} of {bonds} bonds")
+    return "; ".join(said)
