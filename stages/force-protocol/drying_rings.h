@@ -21,8 +21,8 @@ struct drying_rings {
     struct bridge_ratios *table;
 };
 
-// The rings of RECORD (kept) in NETWORK. Between grains of one size the table takes a
-// second or two, of many sizes some ten. STATUS_BAD_DATA: a ring at a wall;
+// The rings of RECORD (kept) in NETWORK. Making the tables takes a second or two of a
+// core for grains of one size, some twenty for many. STATUS_BAD_DATA: a ring at a wall;
 // STATUS_NOT_CONVERGED as bridge_ratios_create. The caller frees RINGS with
 // drying_rings_free, also after a failure.
 enum status drying_rings_init(const struct network *network,

@@ -8,7 +8,9 @@
 //
 // At contact V ~ p^-2, and a ring is there at any suction and any contact angle below
 // 90 degrees; across a gap there is none above a suction that falls with the contact
-// angle. Two grains hold no ring across a gap wider than 2 tension cos(angle) / p: no
+// angle. Below a suction of tension cos(angle) over the effective radius a ring reaches
+// around its smaller grain and has long met others: it is taken at that suction.
+// Two grains hold no ring across a gap wider than 2 tension cos(angle) / p: no
 // liquid has that suction between plates so far apart.
 #include "network/contact_rings.h"
 
@@ -110,6 +112,11 @@ static enum status ring_volume(const struct network *network,
 {
     const double angle = liquid->contact_angle, separation = rings->separation[face];
     const int32_t *grain = network->face_particles[face];
+    const double sum =
+        network->packing.radius[grain[0]] + network->packing.radius[grain[1]];
+    const double radius =
+        2 * network->packing.radius[grain[0]] * network->packing.radius[grain[1]] / sum;
+    suction = fmax(suction, liquid->surface_tension * cos(angle) / radius);
     *volume = 0;
     if (!(separation * suction < 2 * liquid->surface_tension * cos(angle)))
         return STATUS_OK;
