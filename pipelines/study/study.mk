@@ -35,4 +35,5 @@ irregular: ## cracks in irregular aggregates of 1000 grains, pressure gradients 
 monte-carlo: ## cracks over 10 realisations in both drying limits, tested against each other (minutes)
 soft: ## shrinkage and spring-back of the soft aggregate, and their picture
 force-history: ## the force of one contact over the drying, K's Fig. 5.12
+fronts: ## pictures of drying fronts in inviscid, viscous and immobile liquid (a minute)
 gradients: ## forces with liquid pressure gradients on and off, and their picture (seconds)

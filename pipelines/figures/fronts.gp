@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variable: tables, the folder of the tables that pipelines/studies/fronts/figure makes.
+# Variable: tables, the folder of the tables that pipelines/figures/fronts makes.
 wide = 330; high = 250; total = 40.0 + 4 * high + 2 * 300
 set terminal @svg "Helvetica,14" size 70 + 3 * wide, total
 set multiplot
