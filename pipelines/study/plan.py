@@ -143,9 +143,14 @@ def version_of(stage):
     return stages.ask(stage, "--version").split()[-1]
 
 
+@functools.cache
+def program_words(stage):
+    return shlex.split(stages.program(stage))
+
+
 def words_of(artifact, name, launcher, threads):
     """The command that makes ARTIFACT, by NAME of each file."""
-    words = [*launcher, *shlex.split(stages.program(artifact.stage())), "-p", artifact.scene]
+    words = [*launcher, *program_words(artifact.stage()), "-p", artifact.scene]
     for item in artifact.sets:
         words += ["--set", item]
     if threads:

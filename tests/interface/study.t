@@ -217,8 +217,8 @@ def refused(title, status, wanted, name, content, *words):
        f"{error} {said}")
 
 
-values = list(range(1, 3001))
-refused("10^7 runs", 65, "9000000 runs (3000 seed x 3000 seed2 x 1 a point), more than 100000", "large.json",
+values = list(range(1, 3201))
+refused("10^7 runs", 65, "10240000 runs (3200 seed x 3200 seed2 x 1 a point), more than 100000", "large.json",
         {"scene": "scene.json", "axes": [{"key": "dry.throat_radius.seed", "values": values},
                                          {"name": "seed2", "key": "dem-replay.bond.strength.seed", "values": values}]})
 refused("a key that no stage has", 65, "wrong.json: axes[0]: dry.liqid: dry has no such parameter; 'liquid'?", "wrong.json",
