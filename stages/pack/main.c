@@ -268,7 +268,8 @@ int main(int argc, char **argv)
     if (given && !(invocation.grains > 0))
         packing = make_import(&invocation, &parameters, inputs, &domain);
     if (invocation.estimates)
-        return estimate(&parameters, given ? packing.n_particle : invocation.grains);
+        return estimate(&parameters,
+                        invocation.grains > 0 ? invocation.grains : packing.n_particle);
 
     struct checkpoint checkpoint;
     begin_checkpoint(&checkpoint, &invocation, inputs, parameters.method);

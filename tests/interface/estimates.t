@@ -66,6 +66,7 @@ ok(status == 64 and said == "" and error.count("\n") == 1 and "--estimate=1000" 
 status, said, error = call("dem-replay", "--estimate=1000", *scene)
 ok(status == 64 and "--estimate=1000,550" in error, "a replay needs the number of loads", error)
 ok(call("dry", "--estimate=none", *scene)[0] == 64, "what is no number: 64")
+ok(estimate("pack", "--estimate=500", *sets("method=import"))["grains"] == 500, "grains that are still to be read may be counted")
 before = set(os.listdir(folder.name))
 estimate("dry", "--estimate", *scene, at("merge-nodes.h5"), "-o", at("nothing.h5"))
 ok(set(os.listdir(folder.name)) == before, "nothing is written")
