@@ -18,6 +18,7 @@
 #include "write_response.h"
 
 #include "basics/memory.h"
+#include "geometry/fragments.h"
 #include "geometry/neighbours.h"
 
 #include <stdlib.h>
@@ -244,14 +245,32 @@ static void put_dryness(struct artifact *artifact, const struct packing *packing
     free(dryness);
 }
 
-// Of snapshots only; from the places where grains began.
-double largest_displacement(const struct packing *packing,
-                            const struct response *response)
+// Pieces of SNAPSHOT: grains that intact bonds join.
+static void find_fragments(struct fragments *fragments, const struct packing *packing,
+                           const uint8_t *held, const struct snapshot *snapshot)
 {
+    fragments_begin(fragments);
+    for (int b = 0; b < packing->n_bond; b++)
+        if (snapshot->intact[b])
+            fragments_join(fragments, packing->bond[b][0], packing->bond[b][1]);
+    fragments_end(fragments, held, NULL);
+}
+
+// Of snapshots only; from the places where grains began. What has come loose of a
+// bonded body does not count.
+static double largest_displacement(const struct packing *packing, const uint8_t *held,
+                                   const struct response *response)
+{
+    struct fragments fragments = fragments_init(packing->n_particle);
     double most = 0;
-    for (int s = 0; s < response->n_snapshot; s++)
+    for (int s = 0; s < response->n_snapshot; s++) {
+        const struct snapshot *snapshot = &response->snapshot[s];
+        find_fragments(&fragments, packing, held, snapshot);
         for (int i = 0; i < packing->n_particle; i++)
-            most = fmax(most, norm(response->snapshot[s].displacement[i]));
+            if (packing->n_bond == 0 || fragments.is_held[fragments.of[i]])
+                most = fmax(most, norm(snapshot->displacement[i]));
+    }
+    fragments_free(&fragments);
     return most;
 }
 
@@ -282,7 +301,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
     artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",
-                        largest_displacement(packing, response));
+                        largest_displacement(packing, settings->held, response));
     artifact_put_number(artifact, "/summary/time_step", response->time_step);
     artifact_put_number(artifact, "/summary/time_step_limit",
                         response->time_step_limit);

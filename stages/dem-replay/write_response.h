@@ -15,8 +15,4 @@ void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);
 
-// The largest displacement of any grain at any snapshot, m. 0 without snapshots.
-double largest_displacement(const struct packing *packing,
-                            const struct response *response);
-
 #endif

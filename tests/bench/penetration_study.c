@@ -95,8 +95,8 @@ static void make_walls(struct dem_wall wall[5])
 {
     for (int w = 0; w < 5; w++) {
         const bool upper = w % 2;
-        wall[w] =
-            (struct dem_wall){.point = upper ? box_upper : box_lower, .elastic = true, .material = 1};
+        wall[w] = (struct dem_wall){
+            .point = upper ? box_upper : box_lower, .elastic = true, .material = 1};
         set_component(&wall[w].normal, w / 2, upper ? -1 : 1);
     }
 }

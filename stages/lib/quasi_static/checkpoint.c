@@ -13,6 +13,7 @@
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"
+#include "splitting/splitting.h"
 
 #include "basics/memory.h"
 
@@ -39,6 +40,8 @@ void quasi_static_drop_cache(struct quasi_static *qs)
     contact_solver_clear(qs->contacts);
     memset(qs->last_increment, 0, (size_t)qs->n_pair * sizeof *qs->last_increment);
     qs->factors = qs->n_load = 0;
+    splitting_free(qs->splitting);
+    qs->splitting = NULL;
     if (qs->large) qs->large->factor_is_stale = true;
 }
 

@@ -8,9 +8,8 @@
 // With K = L L^T a group of rows keeps L^-1 B^T; W is products of these, and
 // free_deformation their products with L^-1 r, so no row costs a whole solve.
 //
-// Newton's method with augmented springs (semismooth_newton.c) and block Gauss-Seidel
-// (gauss_seidel.c) both work on these small dense equations; K is factored elsewhere
-// and used for many of them.
+// Newton's method (semismooth_newton.c) works on these small dense equations; K is
+// factored elsewhere and used for many of them.
 #include "contact_solver_internal.h"
 
 #include "basics/memory.h"
@@ -20,17 +19,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 4000 }; // rows: beyond, the dense system is too large
-
 struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_pair,
                                              const struct contact_pair *pair,
-                                             const double (*tangent)[COMPONENTS])
+                                             const double (*tangent)[COMPONENTS],
+                                             int most_rows)
 {
     struct contact_solver *c = NEW_ARRAY(struct contact_solver, 1);
     c->stiffness = stiffness;
     c->n_pair = n_pair;
     c->pair = pair;
     c->tangent = tangent;
+    c->most_rows = most_rows;
     c->active_of = NEW_ARRAY(int, n_pair);
     contact_solver_clear(c);
     return c;
@@ -195,7 +194,7 @@ static void add_row(struct contact_solver *c, struct batch *batch,
     if (batch->count[group] == BATCH) batch->groups++;
 }
 
-// False when there would be more than MOST rows; those that fit are there.
+// False when there would be more than `most_rows`; those that fit are there.
 bool contact_solver_add(struct contact_solver *c, int count,
                         const struct pair_rows *new)
 {
@@ -203,7 +202,7 @@ bool contact_solver_add(struct contact_solver *c, int count,
     bool fits = true;
     for (int k = 0; k < count && fits; k++) {
         struct active_pair *active = activate(c, new[k].pair);
-        while (active->count < new[k].count && (fits = c->count < MOST)) {
+        while (active->count < new[k].count && (fits = c->count < c->most_rows)) {
             add_row(c, &batch, active);
             if (batch.groups == MOST_SOLVES) add_batch(c, &batch);
         }
@@ -243,16 +242,15 @@ static void guess_deformation(struct contact_solver *c,
                 : 0;
 }
 
-// Newton's method with augmented and with the contacts' own springs, by turns; from the
-// third round on after some sweeps of Gauss-Seidel. The factored rows of the last
-// solution serve again while f is the same. ENOUGH is not below what rounding of the
-// free deformation leaves.
+// Newton's method with augmented springs, then with the contacts' own, then once more.
+// The factored rows of the last solution serve again while f is the same. ENOUGH is not
+// below what rounding of the free deformation leaves.
 bool contact_solver_solve(struct contact_solver *c,
                           const double (*deformation)[COMPONENTS],
                           const double (*guess)[COMPONENTS], double compliance_factor,
                           double enough)
 {
-    enum { ROUNDS = 5 };
+    enum { ROUNDS = 3 };
     if (c->compliance_factor != compliance_factor) c->n_factored = 0;
     c->compliance_factor = compliance_factor;
     c->from = deformation;
@@ -263,7 +261,6 @@ bool contact_solver_solve(struct contact_solver *c,
     if (update_contacts(c, false) <= enough) return true;
     for (int round = 0; round < ROUNDS; round++) {
         if (round > 0 && contact_solver_is_costly(c)) return false;
-        if (round > 1) gauss_seidel(c, enough);
         if (semismooth_newton(c, round % 2 == 0, enough)) return true;
     }
     return false;

@@ -14,10 +14,11 @@
 struct contact_solver;
 
 // For N_PAIR pairs, of which TANGENT (n_pair) is in the factor of STIFFNESS; all are
-// kept, not copied. The caller frees it with contact_solver_free.
+// kept, not copied. Of at most MOST ROWS. The caller frees it with contact_solver_free.
 struct contact_solver *contact_solver_create(struct stiffness *stiffness, int n_pair,
                                              const struct contact_pair *pair,
-                                             const double (*tangent)[COMPONENTS]);
+                                             const double (*tangent)[COMPONENTS],
+                                             int most_rows);
 void contact_solver_free(struct contact_solver *solver);
 
 // No pair is active: after a new factor.

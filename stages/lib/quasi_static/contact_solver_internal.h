@@ -35,7 +35,7 @@ struct row_group {
 // Units of the engine.
 struct contact_solver {
     struct stiffness *stiffness;
-    int n_pair;
+    int n_pair, most_rows;
     const struct contact_pair *pair;
     const double (*tangent)[COMPONENTS];
     const double (*from)[COMPONENTS]; // (n_pair) deformation, e = 0
@@ -81,9 +81,5 @@ void add_compliance(const struct contact_solver *c, int row, double more, double
 // Newton's method from the present deformation on. False: no residual below ENOUGH.
 // ENOUGH is for the largest component of the residual.
 bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough);
-
-// Sweeps over the pairs, each of which is solved exactly while the others keep their
-// loads, to half of ENOUGH; until no contact changes its state, ten at most.
-void gauss_seidel(struct contact_solver *c, double enough);
 
 #endif

@@ -5,6 +5,7 @@
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"
+#include "splitting/splitting.h"
 
 #include "basics/memory.h"
 
@@ -48,7 +49,6 @@ static void find_diagonals(struct quasi_static *qs)
 {
     const double softest = softest_pair(qs);
     qs->regularisation[0] = qs->regularisation[1] = 1e-9 * softest;
-    if (!qs->setup.large_displacements) qs->grain_dashpot = 0.03 * softest;
 }
 
 enum status quasi_static_create(struct quasi_static **result,
@@ -91,6 +91,7 @@ void quasi_static_free(struct quasi_static *qs)
     fragments_free(&qs->fragments);
     free_pair_arrays(qs);
     large_state_free(qs->large);
+    splitting_free(qs->splitting);
     void *const owned[] = {
         qs->pair, qs->displacement, qs->load, qs->dashpot_force, qs->residual,
         qs->step, qs->previous,     qs->rhs,  qs->is_detached,   qs->crack};

@@ -8,8 +8,9 @@
 // factor costs less. Bonds break one after another, the most overloaded first, each in
 // the equilibrium that the last break has led to.
 //
-// With friction there may be no equilibrium near the last one. Then dashpots slow the
-// grains down, which are followed in time until they rest [viscous_relaxation.c]. A
+// With friction Newton's method may not find the contacts that slip, or there may be no
+// equilibrium near the last one. Then a splitting of grains and contacts finds them,
+// and dashpots slow the grains down until they rest [splitting/splitting.h]. A
 // fragment (grains joined by intact bonds) that nothing holds leaves where it would
 // move by more than a tenth of the mean radius or finds no rest: it has no load any
 // more, and nothing touches it. Its flight, and what it would hit, is for lib/dem.

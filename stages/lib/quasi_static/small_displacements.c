@@ -9,6 +9,7 @@
 // they would move beyond SMALL_LIMIT or keep a residual; each detachment begins the
 // load anew, and there are at most as many as fragments.
 #include "quasi_static_internal.h"
+#include "splitting/splitting.h"
 
 #include <math.h>
 
@@ -24,9 +25,9 @@ static void subtract_small_loads(struct quasi_static *qs)
 static bool factor_small(struct quasi_static *qs)
 {
     const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
-    const double more = qs->factored_dashpot = dashpot_in_stiffness(qs);
-    const double soft[2] = {qs->regularisation[0] + more, qs->regularisation[1] + more};
-    return stiffness_factor(qs->matrix, tangent, NULL, soft);
+    const struct stiffness_terms terms = {
+        .tangent = tangent, .soft = {qs->regularisation[0], qs->regularisation[1]}};
+    return stiffness_factor(qs->matrix, &terms);
 }
 
 // To TARGET_FRACTION of the tolerance, or as far below the tolerance as steps reduce
@@ -36,12 +37,9 @@ static bool solve_small(struct quasi_static *qs)
     enum { ROUNDS = 20 };
     update_residual(qs);
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
-    if (qs->damping > 0)
-        qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
-    const double well = (qs->damping > 0 ? 1 : TARGET_FRACTION) * qs->tolerance_now;
+    const double well = TARGET_FRACTION * qs->tolerance_now;
     if (largest_residual(qs) <= well) return true; // the load is the same
     bool is_fresh = qs->factors == 0 ||
-                    qs->factored_dashpot != dashpot_in_stiffness(qs) ||
                     contact_solver_work(qs->contacts) > 16 * stiffness_work(qs->matrix);
     if (is_fresh && !factor_tangent(qs)) return false;
     double before = INFINITY;
@@ -66,7 +64,7 @@ static enum status balance_small(struct quasi_static *qs, struct reason *reason)
     bool rests;
     do {
         roll_back_state(qs);
-        rests = relax_to_equilibrium(qs);
+        rests = settle(qs);
     } while (detach_beyond(qs, qs->displacement, SMALL_LIMIT) ||
              (!rests && detach_beyond(qs, qs->residual, enough)));
     if (!rests) {

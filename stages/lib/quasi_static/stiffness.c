@@ -60,7 +60,7 @@ static struct block block_between(const struct stiffness *s,
     return a < b ? (struct block){a, b} : (struct block){b, a};
 }
 
-static void list_blocks(struct stiffness *s)
+static void list_blocks(struct stiffness *s, const bool *resist)
 {
     s->block = NEW_ARRAY(struct block, s->n_moving + s->n_pair);
     int count = 0;
@@ -68,7 +68,7 @@ static void list_blocks(struct stiffness *s)
         s->block[count++] = (struct block){k, k};
     for (int j = 0; j < s->n_pair; j++) {
         const struct block block = block_between(s, &s->pair[j]);
-        if (block.column >= 0) s->block[count++] = block;
+        if (block.column >= 0 && (!resist || resist[j])) s->block[count++] = block;
     }
     qsort(s->block, (size_t)count, sizeof *s->block, compare_blocks);
     for (int k = 0; k < count; k++)
@@ -81,7 +81,7 @@ static int find_block(const struct stiffness *s, struct block block)
     if (block.column < 0) return -1;
     const struct block *found =
         bsearch(&block, s->block, (size_t)s->n_block, sizeof block, compare_blocks);
-    return (int)(found - s->block);
+    return found ? (int)(found - s->block) : -1;
 }
 
 static void lay_out(struct stiffness *s)
@@ -106,7 +106,7 @@ static void lay_out(struct stiffness *s)
 }
 
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
-                                   const struct contact_pair *pair)
+                                   const struct contact_pair *pair, const bool *resist)
 {
     struct stiffness *s = NEW_ARRAY(struct stiffness, 1);
     s->n = n;
@@ -117,7 +117,7 @@ struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
         s->number[i] = fixed[i] ? -1 : s->n_moving++;
     s->diagonal = NEW_ARRAY(int, s->n_moving);
     s->block_of = NEW_ARRAY(int, n_pair);
-    list_blocks(s);
+    list_blocks(s, resist);
     for (int j = 0; j < n_pair; j++)
         s->block_of[j] = find_block(s, block_between(s, &pair[j]));
     lay_out(s);
@@ -164,7 +164,7 @@ static void kinematic_rows_of(const struct contact_pair *pair, int end,
 static void add_block(struct stiffness *s, int block,
                       const double left[COMPONENTS][DEGREES],
                       const double right[COMPONENTS][DEGREES],
-                      const double tangent[COMPONENTS])
+                      const double tangent[COMPONENTS], double across)
 {
     int stride;
     double *numbers = numbers_of(s, block, &stride);
@@ -172,9 +172,14 @@ static void add_block(struct stiffness *s, int block,
         for (int c = 0; c < DEGREES; c++)
             for (int r = 0; r < DEGREES; r++)
                 numbers[c * stride + r] += tangent[k] * left[k][r] * right[k][c];
+    for (int c = 0; c < DEGREES && across != 0; c++)
+        for (int r = 0; r < DEGREES; r++)
+            numbers[c * stride + r] += across * (left[SHEAR][r] * right[SHEAR + 1][c] +
+                                                 left[SHEAR + 1][r] * right[SHEAR][c]);
 }
 
-static void add_pair(struct stiffness *s, int j, const double tangent[COMPONENTS])
+static void add_pair(struct stiffness *s, int j, const double tangent[COMPONENTS],
+                     double across)
 {
     const struct contact_pair *pair = &s->pair[j];
     double arm[2][COMPONENTS][DEGREES];
@@ -183,12 +188,12 @@ static void add_pair(struct stiffness *s, int j, const double tangent[COMPONENTS
         number[end] = pair->grain[end] < 0 ? -1 : s->number[pair->grain[end]];
         if (number[end] < 0) continue;
         kinematic_rows_of(pair, end, arm[end]);
-        add_block(s, s->diagonal[number[end]], arm[end], arm[end], tangent);
+        add_block(s, s->diagonal[number[end]], arm[end], arm[end], tangent, across);
     }
     if (s->block_of[j] < 0) return;
     assert(number[0] >= 0 && number[1] >= 0); // what only two that move have
     const int lower = number[0] < number[1] ? 0 : 1;
-    add_block(s, s->block_of[j], arm[1 - lower], arm[lower], tangent);
+    add_block(s, s->block_of[j], arm[1 - lower], arm[lower], tangent, across);
 }
 
 static void add_rows(struct stiffness *s, int block, int row, int column,
@@ -216,21 +221,30 @@ static void add_geometric(struct stiffness *s, int j,
     if (s->block_of[j] >= 0) add_rows(s, s->block_of[j], 1 - lower, lower, geometric);
 }
 
-bool stiffness_factor(struct stiffness *s, const double (*tangent)[COMPONENTS],
-                      const struct pair_stiffness *geometric, const double soft[2])
+static bool resists(const double tangent[COMPONENTS])
+{
+    for (int k = 0; k < COMPONENTS; k++)
+        if (tangent[k] != 0) return true;
+    return false;
+}
+
+bool stiffness_factor(struct stiffness *s, const struct stiffness_terms *terms)
 {
     if (s->n_moving == 0) return true;
     memset(s->value, 0,
            (size_t)s->start[(size_t)s->n_moving * DEGREES] * sizeof *s->value);
     for (int j = 0; j < s->n_pair; j++)
-        add_pair(s, j, tangent[j]);
-    for (int j = 0; j < s->n_pair && geometric; j++)
-        add_geometric(s, j, &geometric[j]);
-    for (int k = 0; k < s->n_moving; k++) {
+        if (resists(terms->tangent[j]))
+            add_pair(s, j, terms->tangent[j], terms->across ? terms->across[j] : 0);
+    for (int j = 0; j < s->n_pair && terms->geometric; j++)
+        add_geometric(s, j, &terms->geometric[j]);
+    for (int i = 0; i < s->n; i++) {
+        if (s->number[i] < 0) continue;
         int stride;
-        double *numbers = numbers_of(s, s->diagonal[k], &stride);
+        double *numbers = numbers_of(s, s->diagonal[s->number[i]], &stride);
+        const double dashpot = terms->dashpot ? terms->dashpot[i] : 0;
         for (int r = 0; r < DEGREES; r++)
-            numbers[r * stride + r] += soft[r / 3];
+            numbers[r * stride + r] += terms->soft[r / 3] + dashpot;
     }
     return supernodal_factor(s->factor, s->value);
 }

@@ -17,17 +17,24 @@
 struct stiffness;
 
 // For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, which are kept,
-// not copied, and whose grains must stay the same. The caller frees it with
+// not copied, and whose grains must stay the same. Pairs that RESIST (n_pair; NULL:
+// all) make its pattern; the others never have a tangent. The caller frees it with
 // stiffness_free. Fixed grains have no unknowns.
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
-                                   const struct contact_pair *pair);
+                                   const struct contact_pair *pair, const bool *resist);
 void stiffness_free(struct stiffness *stiffness);
 
-// Factors K of the TANGENT (n_pair) of each component, >= 0, the GEOMETRIC stiffness
-// (n_pair; NULL: none) and SOFT on the diagonal, for translations and for rotations.
-// False: a pivot that no number holds. SOFT regularises K where nothing holds a grain.
-bool stiffness_factor(struct stiffness *stiffness, const double (*tangent)[COMPONENTS],
-                      const struct pair_stiffness *geometric, const double soft[2]);
+// What K is made of. `soft` regularises it where nothing holds a grain.
+struct stiffness_terms {
+    const double (*tangent)[COMPONENTS];    // (n_pair) of each component, >= 0
+    const double *across;                   // (n_pair) between both shears; NULL: none
+    const struct pair_stiffness *geometric; // (n_pair); NULL: none
+    double soft[2];        // on the diagonal, for translations and for rotations
+    const double *dashpot; // (n) on the diagonal, of each grain; NULL: none
+};
+
+// Factors K. False: a pivot that no number holds.
+bool stiffness_factor(struct stiffness *stiffness, const struct stiffness_terms *terms);
 
 // Whether K, as last factored, is positive definite to what rounding leaves. If not
 // there still are solutions, with a factor whose lost pivots were replaced.

@@ -65,10 +65,12 @@ static bool factor_large(struct quasi_static *qs)
     if (qs->setup.is_free) large->stabilisation = find_stabilisation(qs);
     const double more =
         large->stabilisation + large->mass_damping * qs->damping / (1 + qs->damping);
-    const double soft[2] = {qs->regularisation[0] + more, qs->regularisation[1] + more};
+    const struct stiffness_terms terms = {
+        .tangent = tangent,
+        .geometric = large->geometric,
+        .soft = {qs->regularisation[0] + more, qs->regularisation[1] + more}};
     large->is_unstable =
-        !stiffness_factor(qs->matrix, tangent, large->geometric, soft) ||
-        !stiffness_is_positive(qs->matrix);
+        !stiffness_factor(qs->matrix, &terms) || !stiffness_is_positive(qs->matrix);
     return !large->is_unstable;
 }
 

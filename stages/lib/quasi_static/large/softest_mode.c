@@ -18,7 +18,9 @@ int find_softest_mode(struct quasi_static *qs)
         const double hold = qs->large->stabilisation;
         const double soft[2] = {qs->regularisation[0] + hold,
                                 qs->regularisation[1] + hold};
-        stiffness_factor(qs->matrix, tangent, NULL, soft);
+        stiffness_factor(
+            qs->matrix,
+            &(struct stiffness_terms){.tangent = tangent, .soft = {soft[0], soft[1]}});
     }
     if (qs->setup.is_free) return davidson_softest_mode(qs, NULL);
     for (int i = 0; i < qs->n; i++)

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inside struct splitting, for the files of this folder only. Units of the engine.
+#ifndef CRAQUELURE_SPLITTING_INTERNAL_H
+#define CRAQUELURE_SPLITTING_INTERNAL_H
+
+#include "acceleration.h"
+#include "splitting.h"
+
+// Near pairs may touch: bonded ones, and others while their gap is small. They alone
+// are in both matrices. NEAR is sorted.
+struct splitting {
+    bool *is_near; // (n_pair)
+    int n_near;
+    int32_t *near;              // (n_near) pairs
+    double stiffness;           // rho, of the springs between grains and contacts
+    double *force;              // (3 n_near) q
+    double *change;             // (3 n_near) of q in an iteration
+    double (*place)[3];         // (n_near) z, deformation by which the contact's law is
+    double *dashpot;            // (n) E, of each grain
+    struct displacement *right; // (n)
+    struct displacement *part;  // (n) of a step
+    struct stiffness *split;    // bonds, dashpots and rho: constant over iterations
+    bool is_split_stale;
+    double change_of_load;     // the largest residual when this load began
+    struct stiffness *tangent; // as contacts are: Newton's method
+    // What is factored last: (n_pair) of each component, and between both shears.
+    double (*values)[COMPONENTS];
+    double *across;
+    struct acceleration of_forces, of_step;
+};
+
+// ---- contact_splitting.c ------------------------------------------------------------
+
+// Begins at the state of the last equilibrium.
+void begin_splitting(struct quasi_static *qs, struct splitting *s);
+// Iterates until no spring between grain and contact carries more than ENOUGH. False:
+// not within the iterations. The displacements are those of the grains; `place` that of
+// the contacts.
+bool split_contacts(struct quasi_static *qs, struct splitting *s, double enough);
+
+// ---- coupled_newton.c ---------------------------------------------------------------
+
+enum newton_start { AT_PLACES, AT_DISPLACEMENTS };
+enum newton_dashpots { WITHOUT_DASHPOTS, WITH_DASHPOTS };
+
+// Newton's method from the displacements on, the first step with the laws of the
+// contacts at START. False: not found; displacements have no meaning then.
+bool coupled_newton(struct quasi_static *qs, struct splitting *s,
+                    enum newton_start start, enum newton_dashpots dashpots);
+
+// ---- settle.c -----------------------------------------------------------------------
+
+// Pairs that have come near join the others; both matrices get a new pattern. False:
+// none has.
+bool add_near_pairs(struct quasi_static *qs, struct splitting *s);
+
+#endif
