@@ -98,7 +98,7 @@ struct liquid_group {
     double asymmetry[PAIRS_IN_GROUP]; // of the two radii [bridges/ratios.h]
     // Over its cube; 0: no bridge. Of adhesion the unit of gaps.
     double volume[PAIRS_IN_GROUP];
-    double rupture[PAIRS_IN_GROUP];   // the gap at which it ruptures, over the radius
+    double rupture[PAIRS_IN_GROUP]; // the gap at which it ruptures, over the radius
 };
 
 // Rolling resistance: coefficients, and the moment of the rolling spring on the second
