@@ -498,6 +498,20 @@ def renumbered():
     ok(error < 1e-9, "the scene turned: forces turn", error)
 
 
+# ---- packed ---------------------------------------------------------------------------
+
+
+def packed():
+    drying("long", *scatter(30, [12 * R] * 3), [12 * R] * 3, [], [SIDES])
+    few, _, _ = forces("long", steps=41)
+    many, _, _ = forces("long", steps=4001)
+    with h5py.File("f") as file:
+        size = file["force"].id.get_storage_size()
+        ok(file["force"].compression == "gzip" and size < many.nbytes / 2,
+           "a large table of forces is packed to less than half", size)
+    ok(np.abs(few - many[::100]).max() < 1e-9 * np.abs(few).max(), "and holds the same forces as a small one")
+
+
 TOP = os.getcwd()
 BIN = os.environ.get("BIN", os.path.join(TOP, "build/bin"))
 with scratch() as folder:
@@ -516,15 +530,6 @@ with scratch() as folder:
     moved()
     renumbered()
     threads()
+    packed()
     os.chdir(TOP)
-# ---- packed ---------------------------------------------------------------------------
-
-drying("long", *scatter(30, [12 * R] * 3), [12 * R] * 3, [], [SIDES])
-few, _, _ = forces("long", steps=41)
-many, _, _ = forces("long", steps=4001)
-with h5py.File("f") as file:
-    ok(file["force"].compression == "gzip" and file["force"].id.get_storage_size() < many.nbytes / 2,
-       "a large table of forces is packed to less than half", file["force"].id.get_storage_size())
-ok(np.abs(few - many[::100]).max() < 1e-9 * np.abs(few).max(), "and holds the same forces as a small one")
-
 done()
