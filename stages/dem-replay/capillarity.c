@@ -101,13 +101,11 @@ void add_capillary_forces(const struct drainage *drainage, const struct dem *dem
 
 // ---- gas ----------------------------------------------------------------------------
 
-// The liquid of a round, m3, or what is left of the step.
+// The liquid of a round, m3.
 static double portion(const struct drainage *drainage)
 {
     const struct capillarity *how = drainage->how;
-    return fmin(drainage->begin * how->last_drained /
-                    (double)(how->steps * how->rounds),
-                drainage->target - drainage->drained);
+    return drainage->begin * how->last_drained / (double)(how->steps * how->rounds);
 }
 
 // Marks what evaporates in this round: where the largest suction is too small for it,
@@ -186,9 +184,10 @@ void aim_at_volume(struct drainage *drainage, int row)
         drainage->begin * how->last_drained * (row + 1) / (double)how->steps;
 }
 
+// To the nearest portion: all are of one size, for the suction depends on it.
 bool has_evaporated(const struct drainage *drainage)
 {
-    return drainage->drained >= drainage->target;
+    return drainage->drained >= drainage->target - portion(drainage) / 2;
 }
 
 // ---- history ------------------------------------------------------------------------
