@@ -48,7 +48,10 @@ enum newton_dashpots { WITHOUT_DASHPOTS, WITH_DASHPOTS };
 bool coupled_newton(struct quasi_static *qs, struct splitting *s,
                     enum newton_start start, enum newton_dashpots dashpots);
 
-// ---- settle.c -----------------------------------------------------------------------
+// ---- near_pairs.c -------------------------------------------------------------------
+
+// Freed with splitting_free.
+struct splitting *splitting_create(struct quasi_static *qs);
 
 // Pairs that have come near join the others; both matrices get a new pattern. False:
 // none has.
