@@ -8,8 +8,9 @@
 // With K = L L^T a group of rows keeps L^-1 B^T; W is products of these, and
 // free_deformation their products with L^-1 r, so no row costs a whole solve.
 //
-// Newton's method (semismooth_newton.c) works on these small dense equations; K is
-// factored elsewhere and used for many of them.
+// Newton's method with augmented springs (semismooth_newton.c) and block Gauss-Seidel
+// (gauss_seidel.c) both work on these small dense equations; K is factored elsewhere
+// and used for many of them.
 #include "contact_solver_internal.h"
 
 #include "basics/memory.h"
@@ -73,6 +74,11 @@ void contact_solver_free(struct contact_solver *solver)
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(solver);
+}
+
+bool contact_solver_is_full(const struct contact_solver *solver)
+{
+    return solver->count == solver->most_rows;
 }
 
 int contact_solver_count(const struct contact_solver *solver)
@@ -242,15 +248,16 @@ static void guess_deformation(struct contact_solver *c,
                 : 0;
 }
 
-// Newton's method with augmented springs, then with the contacts' own, then once more.
-// The factored rows of the last solution serve again while f is the same. ENOUGH is not
-// below what rounding of the free deformation leaves.
+// Newton's method with augmented and with the contacts' own springs, by turns; from the
+// third round on after some sweeps of Gauss-Seidel. The factored rows of the last
+// solution serve again while f is the same. ENOUGH is not below what rounding of the
+// free deformation leaves.
 bool contact_solver_solve(struct contact_solver *c,
                           const double (*deformation)[COMPONENTS],
                           const double (*guess)[COMPONENTS], double compliance_factor,
                           double enough)
 {
-    enum { ROUNDS = 3 };
+    enum { ROUNDS = 5 };
     if (c->compliance_factor != compliance_factor) c->n_factored = 0;
     c->compliance_factor = compliance_factor;
     c->from = deformation;
@@ -261,6 +268,7 @@ bool contact_solver_solve(struct contact_solver *c,
     if (update_contacts(c, false) <= enough) return true;
     for (int round = 0; round < ROUNDS; round++) {
         if (round > 0 && contact_solver_is_costly(c)) return false;
+        if (round > 1) gauss_seidel(c, enough);
         if (semismooth_newton(c, round % 2 == 0, enough)) return true;
     }
     return false;

@@ -33,6 +33,9 @@ bool contact_solver_add(struct contact_solver *solver, int count,
                         const struct pair_rows *new);
 int contact_solver_count(const struct contact_solver *solver); // of rows
 
+// Whether there is no room for more of them.
+bool contact_solver_is_full(const struct contact_solver *solver);
+
 // Multiplications since no pair was active.
 double contact_solver_work(const struct contact_solver *solver);
 // Whether these are more than 100 factors take, and more than 1e10 (a second or two):

@@ -82,4 +82,8 @@ void add_compliance(const struct contact_solver *c, int row, double more, double
 // ENOUGH is for the largest component of the residual.
 bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enough);
 
+// Sweeps over the pairs, each of which is solved exactly while the others keep their
+// loads, to half of ENOUGH; until no contact changes its state, ten at most.
+void gauss_seidel(struct contact_solver *c, double enough);
+
 #endif

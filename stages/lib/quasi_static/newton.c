@@ -2,11 +2,12 @@
 // One step of Newton's method for the displacements u,
 //     residual(u) = load - damping dashpot_force - B^T response(B u) = 0.
 // K is the tangent as it was last factored, B^T tangent B. Dashpots at pairs have
-// damping K, so that (1 + damping) K is factored. Pairs whose response has changed
-// since carry an excess load q [contact_solver.h]:
+// damping K, those of grains damping c, so that (1 + damping) (K + damping/(1 +
+// damping) c) is factored. Pairs whose response has changed since carry an excess load
+// q [contact_solver.h]:
 //     K step = rhs = (residual - B^T q(B step)) / (1 + damping)
-// and the dashpot force, which is K (u - previous), grows by rhs. A pair that the step
-// changes is active from then on, and the step is found again.
+// and the dashpot force, which is K (u - previous), grows by rhs less the share of c. A
+// pair that the step changes is active from then on, and the step is found again.
 #include "quasi_static_internal.h"
 
 #include <string.h>
@@ -129,9 +130,11 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh)
         return factor_tangent(qs);
     }
     if (qs->kinematics->adjust_step) qs->kinematics->adjust_step(qs);
+    const double dashpot = dashpot_in_stiffness(qs);
     for (int i = 0; i < qs->n; i++) {
         displacement_subtract(&qs->displacement[i],
                               displacement_scaled(-1, qs->step[i]));
+        displacement_subtract(&qs->rhs[i], displacement_scaled(dashpot, qs->step[i]));
         displacement_subtract(&qs->dashpot_force[i],
                               displacement_scaled(-1, qs->rhs[i]));
     }

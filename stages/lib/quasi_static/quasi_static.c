@@ -49,6 +49,7 @@ static void find_diagonals(struct quasi_static *qs)
 {
     const double softest = softest_pair(qs);
     qs->regularisation[0] = qs->regularisation[1] = 1e-9 * softest;
+    if (!qs->setup.large_displacements) qs->grain_dashpot = 0.03 * softest;
 }
 
 enum status quasi_static_create(struct quasi_static **result,

@@ -28,7 +28,7 @@ static const double FAILURE_THRESHOLD = 1 - 1e-9;
 
 // Rows of the dense systems of contacts that changed. Small displacements with friction
 // have another method where there would be more [splitting/splitting.h].
-enum { MOST_ROWS = 4000, MOST_ROWS_WITH_FRICTION = 500 };
+enum { MOST_ROWS = 4000, MOST_ROWS_WITH_FRICTION = 2000 };
 
 // Residuals of many grains add up: where iterations still gain much, they go on to this
 // fraction of the tolerance.
@@ -77,6 +77,7 @@ struct quasi_static {
     double largest_load;                // so far: scale of the residual
     double damping;                     // of dashpots, over stiffness times time step
     struct displacement *dashpot_force; // (n) of those at pairs, at a damping of 1
+    double grain_dashpot; // of one on each grain, at a damping of 1; 0: none
     // A step of Newton's method.
     struct displacement *step;       // (n)
     double (*increment)[COMPONENTS]; // (n_pair) of the deformation, by the step
@@ -89,6 +90,7 @@ struct quasi_static {
     struct contact_solver *contacts;
     struct pair_rows *changed; // (n_pair) room for a list
     double regularisation[2];  // on the diagonal of K: of translations, of rotations
+    double factored_dashpot;   // the same of the grains' dashpots
     // Fragments, and grains that have left.
     struct fragments fragments;
     bool *is_detached; // (n)
@@ -131,7 +133,12 @@ void update_load_scale(struct quasi_static *qs);
 void deform_pairs(const struct quasi_static *qs, const struct displacement *moved,
                   double (*deformation)[COMPONENTS]);
 void update_deformation(struct quasi_static *qs); // of the iterate
-void update_residual(struct quasi_static *qs);    // and the deformation
+// What is added to the diagonal of K: (1 + damping) times it is damping grain_dashpot.
+static inline double dashpot_in_stiffness(const struct quasi_static *qs)
+{
+    return qs->grain_dashpot * qs->damping / (1 + qs->damping);
+}
+void update_residual(struct quasi_static *qs); // and the deformation
 double largest_residual(const struct quasi_static *qs);
 double largest_dashpot_load(const struct quasi_static *qs);
 int grain_of_largest_residual(const struct quasi_static *qs); // the first such
@@ -148,8 +155,8 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh);
 void commit_state(struct quasi_static *qs);
 void roll_back_state(struct quasi_static *qs);
 
-// Large displacements: the next equilibrium by Newton's method, else by viscous
-// relaxation from the last one. False: it did not come to rest.
+// The next equilibrium: by Newton's method, else by viscous relaxation from the last
+// one. False: it did not come to rest.
 bool relax_to_equilibrium(struct quasi_static *qs);
 
 // ---- bonds and fragments ------------------------------------------------------------

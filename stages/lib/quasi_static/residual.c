@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// residual = load - damping dashpot_force - B^T response(B u)
+// residual = load - damping (dashpot_force + grain_dashpot (u - previous))
+//            - B^T response(B u)
 // and 0 for grains that are fixed or detached. A residual is as large as the larger of
 // its force and its moment; the largest of all grains is what the tolerance judges.
 #include "quasi_static_internal.h"
@@ -21,11 +22,20 @@ void update_deformation(struct quasi_static *qs)
     deform_pairs(qs, qs->displacement, qs->deformation);
 }
 
+static struct displacement dashpot_load(const struct quasi_static *qs, int i)
+{
+    const struct displacement moved =
+        displacement_between(&qs->previous[i], &qs->displacement[i]);
+    struct displacement load = qs->dashpot_force[i];
+    displacement_subtract(&load, displacement_scaled(-qs->grain_dashpot, moved));
+    return displacement_scaled(qs->damping, load);
+}
+
 double largest_dashpot_load(const struct quasi_static *qs)
 {
     double most = 0;
     for (int i = 0; i < qs->n; i++)
-        most = fmax(most, qs->damping * displacement_size(qs->dashpot_force[i]));
+        most = fmax(most, displacement_size(dashpot_load(qs, i)));
     return most;
 }
 
@@ -33,8 +43,7 @@ void update_residual(struct quasi_static *qs)
 {
     for (int i = 0; i < qs->n; i++) {
         qs->residual[i] = qs->load[i];
-        displacement_subtract(&qs->residual[i],
-                              displacement_scaled(qs->damping, qs->dashpot_force[i]));
+        displacement_subtract(&qs->residual[i], dashpot_load(qs, i));
     }
     qs->kinematics->subtract_internal_loads(qs);
     for (int i = 0; i < qs->n; i++)

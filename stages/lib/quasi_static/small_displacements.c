@@ -25,8 +25,10 @@ static void subtract_small_loads(struct quasi_static *qs)
 static bool factor_small(struct quasi_static *qs)
 {
     const double(*tangent)[COMPONENTS] = (const double(*)[COMPONENTS])qs->tangent;
+    const double more = qs->factored_dashpot = dashpot_in_stiffness(qs);
     const struct stiffness_terms terms = {
-        .tangent = tangent, .soft = {qs->regularisation[0], qs->regularisation[1]}};
+        .tangent = tangent,
+        .soft = {qs->regularisation[0] + more, qs->regularisation[1] + more}};
     return stiffness_factor(qs->matrix, &terms);
 }
 
@@ -37,9 +39,12 @@ static bool solve_small(struct quasi_static *qs)
     enum { ROUNDS = 20 };
     update_residual(qs);
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
-    const double well = TARGET_FRACTION * qs->tolerance_now;
+    if (qs->damping > 0)
+        qs->tolerance_now = fmax(qs->tolerance_now, 1e-3 * largest_residual(qs));
+    const double well = (qs->damping > 0 ? 1 : TARGET_FRACTION) * qs->tolerance_now;
     if (largest_residual(qs) <= well) return true; // the load is the same
     bool is_fresh = qs->factors == 0 ||
+                    qs->factored_dashpot != dashpot_in_stiffness(qs) ||
                     contact_solver_work(qs->contacts) > 16 * stiffness_work(qs->matrix);
     if (is_fresh && !factor_tangent(qs)) return false;
     double before = INFINITY;

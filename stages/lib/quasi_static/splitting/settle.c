@@ -147,23 +147,21 @@ static bool few_slide(const struct quasi_static *qs)
     int count = 0;
     for (int j = 0; j < qs->n_pair; j++)
         count += qs->pair[j].contact.state == CONTACT_SLIPPING;
-    return 3 * count < MOST_ROWS_WITH_FRICTION;
+    return 12 * count < MOST_ROWS_WITH_FRICTION;
 }
 
 bool settle(struct quasi_static *qs)
 {
+    const bool has_friction = qs->setup.material.friction > 0;
     qs->damping = 0;
-    if (few_slide(qs) && qs->kinematics->solve(qs)) {
-        commit_state(qs);
-        return true;
-    }
+    if (few_slide(qs) && relax_to_equilibrium(qs)) return true;
     roll_back_state(qs);
     update_residual(qs);
+    if (qs->is_unconverged || !has_friction) return false;
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
     if (!qs->splitting) qs->splitting = splitting_create(qs);
     qs->splitting->change_of_load = fmin(largest_residual(qs), qs->largest_load);
-    const bool rests = !qs->is_unconverged && follow(qs, qs->splitting);
-    if (rests) return true;
+    if (follow(qs, qs->splitting)) return true;
     roll_back_state(qs);
     update_residual(qs);
     return false;

@@ -1,12 +1,38 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where there is no equilibrium near the last one, dashpots slow the grains, which are
 // followed by implicit Euler steps,
-//     B^T response(B u) + damping K (u - previous) = load,
+//     B^T response(B u) + damping (K + c) (u - previous) = load,
 // damping being viscosity over time step: large steps have little of it, and without
 // any the step leads to equilibrium. A step that is found becomes history.
-#include "../quasi_static_internal.h"
+//
+// Dashpots at pairs, in proportion to K, do not slow a grain that touches nothing, or
+// rolls. So each grain also has a dashpot c of its own, much softer than any pair.
+#include "quasi_static_internal.h"
 
 #include <math.h>
+#include <string.h>
+
+void commit_state(struct quasi_static *qs)
+{
+    memcpy(qs->previous, qs->displacement, (size_t)qs->n * sizeof *qs->previous);
+    for (int j = 0; j < qs->n_pair; j++) {
+        for (int k = 0; k < COMPONENTS; k++)
+            qs->last_increment[j][k] =
+                qs->deformation[j][k] - qs->pair[j].deformation[k];
+        memcpy(qs->pair[j].deformation, qs->deformation[j],
+               sizeof qs->pair[j].deformation);
+        qs->pair[j].contact = qs->response[j].contact;
+        if (qs->pair[j].contact.state == CONTACT_NEW)
+            qs->pair[j].contact.state = CONTACT_STICKING;
+    }
+    if (qs->kinematics->commit) qs->kinematics->commit(qs);
+}
+
+void roll_back_state(struct quasi_static *qs)
+{
+    memcpy(qs->displacement, qs->previous, (size_t)qs->n * sizeof *qs->displacement);
+    memset(qs->dashpot_force, 0, (size_t)qs->n * sizeof *qs->dashpot_force);
+}
 
 // How long the steps in time are.
 struct pace {
@@ -44,6 +70,17 @@ static void shorten(struct quasi_static *qs, struct pace *pace)
     if (qs->damping < SOFTEST) qs->damping = INFINITY;
 }
 
+// Whether something held would move further than is small: it slides without end, and
+// longer steps only take it further. What is not a number goes on, to be reported.
+static bool slides_away(const struct quasi_static *qs)
+{
+    for (int i = 0; i < qs->n && !qs->large; i++)
+        if (qs->fragments.is_held[qs->fragments.of[i]] && !qs->is_detached[i] &&
+            displacement_size(qs->displacement[i]) > SMALL_LIMIT)
+            return true;
+    return false;
+}
+
 // False: no rest within the iterations, or no step with the stiffest dashpots; the
 // caller rolls back.
 static bool viscous_relaxation(struct quasi_static *qs)
@@ -53,6 +90,7 @@ static bool viscous_relaxation(struct quasi_static *qs)
     roll_back_state(qs);
     for (int64_t k = 0; k < qs->setup.most_iterations && qs->damping <= STIFFEST; k++) {
         if (qs->kinematics->solve(qs)) {
+            if (qs->damping > 0 && slides_away(qs)) break;
             pace.carried = largest_dashpot_load(qs);
             commit_state(qs);
             if (qs->damping == 0) return true;
@@ -65,6 +103,7 @@ static bool viscous_relaxation(struct quasi_static *qs)
     return false;
 }
 
+// Where too many contacts change for Newton's method, the splitting is for them.
 bool relax_to_equilibrium(struct quasi_static *qs)
 {
     qs->damping = 0;
@@ -72,7 +111,9 @@ bool relax_to_equilibrium(struct quasi_static *qs)
         commit_state(qs);
         return true;
     }
-    if (!qs->is_unconverged && viscous_relaxation(qs)) return true;
+    const bool has_splitting = !qs->large && qs->setup.material.friction > 0;
+    const bool too_many = has_splitting && contact_solver_is_full(qs->contacts);
+    if (!qs->is_unconverged && !too_many && viscous_relaxation(qs)) return true;
     qs->damping = 0;
     roll_back_state(qs);
     update_residual(qs);
