@@ -119,13 +119,13 @@ bool split_contacts(struct quasi_static *qs, struct splitting *s, double enough)
 {
     enum { MOST = 600 };
     if (s->is_split_stale && !factor(qs, s)) return false;
-    acceleration_begin(&s->of_forces);
+    anderson_normal_begin(&s->of_forces);
     for (int k = 0; k < MOST; k++) {
         move_contacts(qs, s);
         const double left = move_grains(qs, s);
         if (left <= enough) return true;
         if (!isfinite(left)) return false;
-        acceleration_step(&s->of_forces, s->change);
+        anderson_normal_step(&s->of_forces, s->change);
         for (int l = 0; l < 3 * s->n_near; l++)
             s->force[l] += s->change[l];
     }

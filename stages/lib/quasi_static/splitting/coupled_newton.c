@@ -124,14 +124,14 @@ static bool find_step(struct quasi_static *qs, struct splitting *s,
     const double whole = largest_residual(qs);
     const double enough = fmax(1e-4 * whole, 1e-4 * qs->tolerance_now);
     memset(qs->step, 0, (size_t)qs->n * sizeof *qs->step);
-    acceleration_begin(&s->of_step);
+    anderson_normal_begin(&s->of_step);
     for (*turns = 0; *turns < MOST; ++*turns) {
         const double left = find_left(qs, s, dashpots, s->right);
         if (left <= enough) return true;
         if (!isfinite(left)) return false;
         stiffness_begin(s->tangent, s->right);
         stiffness_finish(s->tangent, s->part);
-        acceleration_step(&s->of_step, &s->part[0].translation.x);
+        anderson_normal_step(&s->of_step, &s->part[0].translation.x);
         for (int i = 0; i < qs->n; i++)
             displacement_subtract(&qs->step[i], displacement_scaled(-1, s->part[i]));
     }

@@ -18,8 +18,8 @@ void splitting_free(struct splitting *s)
     if (!s) return;
     stiffness_free(s->split);
     stiffness_free(s->tangent);
-    acceleration_free(&s->of_forces);
-    acceleration_free(&s->of_step);
+    anderson_normal_free(&s->of_forces);
+    anderson_normal_free(&s->of_step);
     void *const owned[] = {s->is_near, s->near,  s->force, s->change, s->place,
                            s->dashpot, s->right, s->part,  s->values, s->across};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
@@ -45,7 +45,7 @@ static void make_matrices(struct quasi_static *qs, struct splitting *s)
 {
     stiffness_free(s->split);
     stiffness_free(s->tangent);
-    acceleration_free(&s->of_forces);
+    anderson_normal_free(&s->of_forces);
     s->n_near = 0;
     for (int j = 0; j < qs->n_pair; j++)
         if (s->is_near[j]) s->near[s->n_near++] = j;
@@ -53,7 +53,7 @@ static void make_matrices(struct quasi_static *qs, struct splitting *s)
     for (int k = 0; k < 2; k++)
         *both[k] =
             stiffness_create(qs->n, qs->setup.fixed, qs->n_pair, qs->pair, s->is_near);
-    s->of_forces = acceleration_init(3 * s->n_near, 10);
+    s->of_forces = anderson_normal_init(3 * s->n_near, 10);
     s->is_split_stale = true;
 }
 
@@ -77,7 +77,7 @@ struct splitting *splitting_create(struct quasi_static *qs)
     s->right = NEW_ARRAY(struct displacement, qs->n);
     s->part = NEW_ARRAY(struct displacement, qs->n);
     s->stiffness = spring_stiffness(qs);
-    s->of_step = acceleration_init(6 * qs->n, MOST_DEPTH);
+    s->of_step = anderson_normal_init(6 * qs->n, ANDERSON_NORMAL_DEPTH);
     for (int j = 0; j < qs->n_pair; j++)
         s->is_near[j] = is_near(&qs->pair[j], qs->pair[j].deformation);
     make_matrices(qs, s);

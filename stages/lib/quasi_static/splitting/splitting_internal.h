@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_SPLITTING_INTERNAL_H
 #define CRAQUELURE_SPLITTING_INTERNAL_H
 
-#include "acceleration.h"
+#include "sparse/anderson_normal.h"
 #include "splitting.h"
 
 // Near pairs may touch: bonded ones, and others while their gap is small. They alone
@@ -26,7 +26,7 @@ struct splitting {
     // What is factored last: (n_pair) of each component, and between both shears.
     double (*values)[COMPONENTS];
     double *across;
-    struct acceleration of_forces, of_step;
+    struct anderson_normal of_forces, of_step;
 };
 
 // ---- contact_splitting.c ------------------------------------------------------------

@@ -5,7 +5,7 @@
 //     x_new = x + f - sum_k c_k dG_k.
 // A change that depends on newer ones to ALIKE of its square is left out. Where |f|
 // grows by LOST, G is not linear and all changes are dropped. Sums in a fixed order.
-#include "acceleration.h"
+#include "sparse/anderson_normal.h"
 
 #include "basics/memory.h"
 
@@ -16,20 +16,20 @@
 
 static const double LOST = 4, ALIKE = 1e-8;
 
-struct acceleration acceleration_init(int n, int depth)
+struct anderson_normal anderson_normal_init(int n, int depth)
 {
     const size_t all = (size_t)n * (size_t)depth;
-    return (struct acceleration){.n = n,
-                                 .depth = depth,
-                                 .n_kept = -1,
-                                 .norm = INFINITY,
-                                 .last_residual = NEW_ARRAY(double, n),
-                                 .last_step = NEW_ARRAY(double, n),
-                                 .residual_change = NEW_ARRAY(double, all),
-                                 .image_change = NEW_ARRAY(double, all)};
+    return (struct anderson_normal){.n = n,
+                                    .depth = depth,
+                                    .n_kept = -1,
+                                    .norm = INFINITY,
+                                    .last_residual = NEW_ARRAY(double, n),
+                                    .last_step = NEW_ARRAY(double, n),
+                                    .residual_change = NEW_ARRAY(double, all),
+                                    .image_change = NEW_ARRAY(double, all)};
 }
 
-void acceleration_free(struct acceleration *a)
+void anderson_normal_free(struct anderson_normal *a)
 {
     free(a->last_residual);
     free(a->last_step);
@@ -37,7 +37,7 @@ void acceleration_free(struct acceleration *a)
     free(a->image_change);
 }
 
-void acceleration_begin(struct acceleration *a)
+void anderson_normal_begin(struct anderson_normal *a)
 {
     a->n_kept = -1;
     a->newest = 0;
@@ -66,7 +66,7 @@ static double *row_of(double *rows, int k, int n)
 }
 
 // The new change takes the place of the oldest.
-static void keep(struct acceleration *a, const double *restrict step)
+static void keep(struct anderson_normal *a, const double *restrict step)
 {
     const int n = a->n;
     const double norm = sqrt(product(step, step, n));
@@ -94,8 +94,9 @@ static void keep(struct acceleration *a, const double *restrict step)
 
 // The K-th row of the Cholesky factor, of changes AT; PART of it solved forward. False:
 // it depends on those before.
-static bool factor_row(const struct acceleration *a, int k, const int *at,
-                       const bool *good, double lower[][MOST_DEPTH], double *part)
+static bool factor_row(const struct anderson_normal *a, int k, const int *at,
+                       const bool *good, double lower[][ANDERSON_NORMAL_DEPTH],
+                       double *part)
 {
     const double own = a->gram[at[k]][at[k]];
     double left = own;
@@ -114,11 +115,12 @@ static bool factor_row(const struct acceleration *a, int k, const int *at,
     return true;
 }
 
-void acceleration_step(struct acceleration *a, double *step)
+void anderson_normal_step(struct anderson_normal *a, double *step)
 {
-    double lower[MOST_DEPTH][MOST_DEPTH], part[MOST_DEPTH];
-    bool good[MOST_DEPTH];
-    int at[MOST_DEPTH];
+    double lower[ANDERSON_NORMAL_DEPTH][ANDERSON_NORMAL_DEPTH],
+        part[ANDERSON_NORMAL_DEPTH];
+    bool good[ANDERSON_NORMAL_DEPTH];
+    int at[ANDERSON_NORMAL_DEPTH];
     keep(a, step);
     const int n = a->n, m = a->n_kept;
     for (int k = 0; k < m; k++) {
