@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // flow: viscous flow through a packing, and its drag on every grain.
 //
-// In this order: cells and pores (pore_cells.h), throats and their conductances, boundary
-// conditions, how fast pores open (if anything moves), pressures, forces, then what is
-// asked for: Stokes' drag, pore stresses, the permeability tensor, column by column
-// from a pressure drop of 1 Pa along each axis. With U the mean velocity for a
+// In this order: cells and pores (pore_cells.h), throats and their conductances,
+// boundary conditions, how fast pores open (if anything moves), pressures, forces, then
+// what is asked for: Stokes' drag, pore stresses, the permeability tensor, column by
+// column from a pressure drop of 1 Pa along each axis. With U the mean velocity for a
 // viscosity of 1, drop the pressure drop and L the box along the flow,
 //     permeability = U L unit^2 / drop,   bed_permeability = permeability bed_share:
 // the bed is the part of the box that grains reach over, in series with free fluid.

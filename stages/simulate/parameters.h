@@ -92,7 +92,7 @@ struct simulate_parameters {
     struct dem_bond_material bond;
     double bond_contact_strength; // N
     struct dem_liquid liquid;     // of no volume: dry
-    double adhesion; // J/m2
+    double adhesion;              // J/m2
     int bridge_model;
     double surface_tension, contact_angle; // N/m, degrees; NAN: water, 0
     int64_t forces_row; // of a forces artifact; below 0: from its end

@@ -12,7 +12,7 @@ static const double contact_stiffness = 3e4;
 static const double radius_fraction = 0.5858;
 
 static inline struct quasi_static_setup setup_of(const struct packing *packing,
-                                                const uint8_t *fixed)
+                                                 const uint8_t *fixed)
 {
     return (struct quasi_static_setup){
         .packing = packing,

@@ -4,8 +4,8 @@
 // same, and pores come to where walls put them as one over their radius.
 #include "../test.h"
 #include "basics/memory.h"
-#include "network/pore_cells.h"
 #include "geometry/triangulation/regular_triangulation.h"
+#include "network/pore_cells.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -36,9 +36,8 @@ static struct result invaded(const struct network *network, unsigned inlet,
                      0);
     conditions.entry_priority = entry.entry_priority;
     assert_int_equal(invade(network, &conditions, &result.invasion, &result.reason), 0);
-    result.outcome =
-        outcome_init(network, &conditions, &result.invasion, entry.pressure,
-                     HELD_BY_THROATS);
+    result.outcome = outcome_init(network, &conditions, &result.invasion,
+                                  entry.pressure, HELD_BY_THROATS);
     result.status = transport_find(network, &conditions, &result.outcome,
                                    &result.transport, &result.reason);
     entry_free(&entry);
