@@ -225,6 +225,7 @@ static void test_refuses_what_it_cannot(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_follows_the_closed_form),
         cmocka_unit_test(test_holds_up_to_the_pull_off_force),

@@ -256,6 +256,7 @@ static void test_too_few_grains(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_throat_of_touching_grains),
         cmocka_unit_test(test_room_between_touching_grains),

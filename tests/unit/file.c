@@ -74,6 +74,7 @@ static void cut_short(void **state)
 
 int main(void)
 {
+    cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes_through_a_pipe),
                                        cmocka_unit_test(cut_short)};
     return cmocka_run_group_tests(tests, NULL, NULL);
