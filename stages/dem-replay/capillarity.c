@@ -11,20 +11,13 @@
 #include "capillarity.h"
 
 #include "basics/memory.h"
+#include "geometry/porosity.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 // Of the mean diameter: so wide is the open air, not a pore.
 static const double OPEN_AIR = 0.5;
-
-static double mean_diameter(const struct packing *packing)
-{
-    double sum = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        sum += 2 * packing->radius[i];
-    return sum / packing->n_particle;
-}
 
 // ---- begin --------------------------------------------------------------------------
 
@@ -50,7 +43,7 @@ enum status drainage_begin(struct drainage *drainage, const struct capillarity *
     drainage->at = duplicate(packing->position, n, sizeof *drainage->at);
     drainage->first_radius = duplicate(packing->radius, n, sizeof *packing->radius);
     drainage->radius = duplicate(packing->radius, n, sizeof *packing->radius);
-    open_to_the_air(drainage, OPEN_AIR * mean_diameter(packing));
+    open_to_the_air(drainage, 2 * OPEN_AIR * mean_radius(packing));
     drainage->begin =
         liquid_volume(&drainage->liquid, drainage->first, drainage->first_radius, NULL);
     return STATUS_OK;

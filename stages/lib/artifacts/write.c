@@ -9,9 +9,8 @@
 // that, nothing is left, and what stood at the path still stands there.
 //
 //     /                   attributes, text: schema, program, parameters, inputs, model
-//     /GROUP/NAME         dataset; type and shape by the schema, deflated in chunks
-//     where
-//                         the schema says "packed" and it is large; attributes, text:
+//     /GROUP/NAME         dataset; type and shape by the schema; deflated in chunks if
+//                         it is large and "packed" in the schema; attributes, text:
 //                         units, long_name
 //     /summary, /liquid   groups with one attribute a number
 //     /VTKHDF             attributes Type, Version; datasets NumberOfPoints (1),

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reading maps a file, so that its bytes take no memory, and takes what comes until the
-// end from pipes, which have no size. Writing: what is new
-// has no name (O_TMPFILE) or is in memory, is synced, and then takes the place of the
-// old by link or rename, which are atomic. Where the file system knows no nameless
-// files it gets another name in the same folder instead. Standard output and devices
-// have nothing to rename over and are written straight.
+// end from pipes, which have no size. Writing: what is new has no name (O_TMPFILE) or
+// is in memory, is synced, and then takes the place of the old by link or rename, which
+// are atomic. Where the file system knows no nameless files it gets another name in the
+// same folder instead. Standard output and devices have nothing to rename over and are
+// written straight.
 #include "basics/file.h"
 
 #include "basics/memory.h"
@@ -42,7 +42,8 @@ static void say_cut_short(int signal)
 {
     static const char line[] = "an input was cut short while it was read\n";
     (void)signal;
-    if (write(STDERR_FILENO, line, sizeof line - 1) >= 0) _exit(STATUS_IO);
+    while (write(STDERR_FILENO, line, sizeof line - 1) < 0 && errno == EINTR)
+        continue;
     _exit(STATUS_IO);
 }
 

@@ -42,9 +42,7 @@ void allocate_pair_arrays(struct quasi_static *qs)
     qs->response = NEW_ARRAY(struct pair_response, qs->n_pair);
     qs->changed = NEW_ARRAY(struct pair_rows, qs->n_pair);
     qs->matrix = stiffness_create(qs->n, qs->setup.fixed, qs->n_pair, qs->pair, NULL);
-    const bool is_large = qs->setup.large_displacements;
-    qs->contacts = contact_solver_create(qs->matrix, qs->n_pair, qs->pair, qs->tangent,
-                                         qs->setup.material.friction > 0 && !is_large
-                                             ? MOST_ROWS_WITH_FRICTION
-                                             : MOST_ROWS);
+    qs->contacts =
+        contact_solver_create(qs->matrix, qs->n_pair, qs->pair, qs->tangent,
+                              has_splitting(qs) ? MOST_ROWS_WITH_FRICTION : MOST_ROWS);
 }

@@ -155,6 +155,12 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh);
 void commit_state(struct quasi_static *qs);
 void roll_back_state(struct quasi_static *qs);
 
+// Whether the splitting is there for contacts that slip [splitting/splitting.h].
+static inline bool has_splitting(const struct quasi_static *qs)
+{
+    return !qs->setup.large_displacements && qs->setup.material.friction > 0;
+}
+
 // The next equilibrium: by Newton's method, else by viscous relaxation from the last
 // one. False: it did not come to rest.
 bool relax_to_equilibrium(struct quasi_static *qs);

@@ -111,8 +111,7 @@ bool relax_to_equilibrium(struct quasi_static *qs)
         commit_state(qs);
         return true;
     }
-    const bool has_splitting = !qs->large && qs->setup.material.friction > 0;
-    const bool too_many = has_splitting && contact_solver_is_full(qs->contacts);
+    const bool too_many = has_splitting(qs) && contact_solver_is_full(qs->contacts);
     if (!qs->is_unconverged && !too_many && viscous_relaxation(qs)) return true;
     qs->damping = 0;
     roll_back_state(qs);

@@ -2,7 +2,7 @@
 // What the splitting works on: pairs that are near enough to touch. Only these are in
 // the patterns of its two matrices, because pairs that stay apart would double the
 // numbers in a factor. A pair that closes all the same joins them, and both patterns
-// are made anew.
+// are made again.
 #include "splitting_internal.h"
 
 #include "basics/memory.h"

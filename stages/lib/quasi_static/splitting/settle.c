@@ -4,8 +4,8 @@
 //     load - B^T response(B u) - E (u - u0) = 0,
 // E a share of the load over a mean radius. Each step is found by the splitting, ever
 // closer until Newton's method ends it. When dashpots carry little, equilibrium without
-// them is sought from there; found, the steps so far count as one. Else the step
-// becomes history, and the next is ten times as long.
+// them is sought from there; if it is found, the steps so far count as one. Else the
+// step becomes history, and the next is ten times as long.
 //
 // A fragment that nothing holds has a dashpot of its own: it lets the fragment move by
 // twice what is small, so a step shows whether it comes to rest or leaves.
@@ -152,12 +152,11 @@ static bool few_slide(const struct quasi_static *qs)
 
 bool settle(struct quasi_static *qs)
 {
-    const bool has_friction = qs->setup.material.friction > 0;
+    const bool is_for_newton = few_slide(qs);
     qs->damping = 0;
-    if (few_slide(qs) && relax_to_equilibrium(qs)) return true;
-    roll_back_state(qs);
-    update_residual(qs);
-    if (qs->is_unconverged || !has_friction) return false;
+    if (is_for_newton && relax_to_equilibrium(qs)) return true;
+    if (!is_for_newton) update_residual(qs);
+    if (qs->is_unconverged || !has_splitting(qs)) return false;
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
     if (!qs->splitting) qs->splitting = splitting_create(qs);
     qs->splitting->change_of_load = fmin(largest_residual(qs), qs->largest_load);
