@@ -19,7 +19,7 @@ import numpy
 sys.path.insert(0, "tests")
 from tap import BIN, SCENE, done, ok, run, scratch
 
-COUNT = int(os.environ.get("FUZZ", 300)) // 6
+COUNT = int(os.environ.get("FUZZ", 100)) // 4
 MOST_SECONDS = 60
 # Done, diverged, bad data.
 ALLOWED = {0, 3, 65}

@@ -16,7 +16,7 @@ import h5py
 import numpy
 
 BIN = os.environ["BIN"]
-COUNT = int(os.environ.get("FUZZ", 300))
+COUNT = int(os.environ.get("FUZZ", 100))
 KEEP = os.environ.get("FUZZ_KEEP")
 MOST_SECONDS = 10
 # Done, unstable, bad data; never an internal error, and nothing else can be wrong here.
