@@ -36,7 +36,9 @@ static double expected_suction(const struct material *material, double radius)
     return SUCTION_OVER_TENSION * tension / radius;
 }
 
-double expected_stress(const struct material *material, double radius)
+// The stress in a neck under the largest capillary force to expect, Pa. RADIUS: of a
+// grain, m. Proportional to surface tension over radius; suggest takes the median.
+static double expected_stress(const struct material *material, double radius)
 {
     return FORCE_OVER_SUCTION * fabs(expected_suction(material, radius)) /
            (material->radius_fraction * material->radius_fraction);

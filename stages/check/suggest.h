@@ -23,10 +23,6 @@ struct material {
 // held. 1.2 of the ninth decile of radii above the lowest grain.
 double bottom_of(const struct packing_facts *facts);
 
-// The stress in a neck under the largest capillary force to expect, Pa. RADIUS: of a
-// grain, m. Proportional to surface tension over radius; suggest takes the median.
-double expected_stress(const struct material *material, double radius);
-
 // With the gravity of the Earth and the largest capillary force to expect on a grain.
 struct bond_numbers expected_bond_numbers(const struct material *material,
                                           const struct packing *packing,

@@ -69,18 +69,6 @@ int column_beside(const struct columns *columns, int column, int dx, int dy)
     return x < 0 || y < 0 ? -1 : x + nx * y;
 }
 
-void column_apart(const struct columns *columns, int a, int b, double apart[2])
-{
-    const int nx = columns->count[0];
-    const int steps[2] = {b % nx - a % nx, b / nx - a / nx};
-    for (int axis = 0; axis < 2; axis++) {
-        const int n = columns->count[axis];
-        double by = steps[axis];
-        if (columns->periodic[axis]) by -= n * nearbyint(by / n);
-        apart[axis] = by * columns->edge[axis];
-    }
-}
-
 bool is_lateral(const struct run *run, int bond)
 {
     const int32_t *end = run->packing.bond[bond];

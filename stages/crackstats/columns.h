@@ -26,9 +26,6 @@ int column_at(const struct columns *columns, double x, double y);
 // The neighbour of COLUMN by DX, DY columns, or -1 outside of the box.
 int column_beside(const struct columns *columns, int column, int dx, int dy);
 
-// From column A to the nearest image of B, in m along x and y.
-void column_apart(const struct columns *columns, int a, int b, double apart[2]);
-
 // The columns over the box of RUN, which needs a grain. It owns nothing.
 struct columns columns_init(const struct run *run);
 

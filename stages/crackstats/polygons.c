@@ -36,7 +36,8 @@ static double percentile_98(const double *value, int n)
     return found;
 }
 
-double crack_threshold(double percentile)
+// The damage above which a column is a crack, from the 98th PERCENTILE.
+static double crack_threshold(double percentile)
 {
     return fmax(0.1, 0.5 * percentile);
 }

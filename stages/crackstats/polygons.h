@@ -27,9 +27,6 @@ struct polygons find_polygons(const struct columns *columns, const struct run *r
                               const uint8_t *intact, const double *damage);
 void polygons_free(struct polygons *polygons);
 
-// The damage above which a column is a crack, from the 98th PERCENTILE.
-double crack_threshold(double percentile);
-
 // Components of core grains, which are not held and keep at least 0.6 of their lateral
 // bonds, by the bonds between them, of at least h^3 / 2 d^3 grains.
 int count_islands(const struct columns *columns, const struct run *run,

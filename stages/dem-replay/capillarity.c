@@ -61,6 +61,15 @@ void drainage_free(struct drainage *drainage)
 
 // ---- suction ------------------------------------------------------------------------
 
+// At time step NOW, Pa.
+static double suction_at(const struct drainage *drainage, int64_t now)
+{
+    if (now >= drainage->until) return drainage->to;
+    const double share =
+        (double)(now - drainage->since) / (double)(drainage->until - drainage->since);
+    return drainage->from + share * (drainage->to - drainage->from);
+}
+
 void aim_at_suction(struct drainage *drainage, double suction, int64_t now,
                     int64_t cycles)
 {
@@ -68,14 +77,6 @@ void aim_at_suction(struct drainage *drainage, double suction, int64_t now,
     drainage->to = suction;
     drainage->since = now;
     drainage->until = now + cycles;
-}
-
-double suction_at(const struct drainage *drainage, int64_t now)
-{
-    if (now >= drainage->until) return drainage->to;
-    const double share =
-        (double)(now - drainage->since) / (double)(drainage->until - drainage->since);
-    return drainage->from + share * (drainage->to - drainage->from);
 }
 
 void add_capillary_forces(const struct drainage *drainage, const struct dem *dem,

@@ -68,9 +68,6 @@ void drainage_free(struct drainage *drainage);
 void aim_at_suction(struct drainage *drainage, double suction, int64_t now,
                     int64_t cycles);
 
-// At time step NOW, Pa.
-double suction_at(const struct drainage *drainage, int64_t now);
-
 // Adds to FORCE what menisci do to the grains of DEM now.
 void add_capillary_forces(const struct drainage *drainage, const struct dem *dem,
                           struct vector *force);

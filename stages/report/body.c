@@ -73,8 +73,9 @@ uint32_t on_grid(const struct grid *grid, struct vector point, int axis)
                             grid->step);
 }
 
-void put_points(struct arrays *arrays, const char *prefix, const struct grid *grid,
-                const struct vector *point, int n)
+// POINT (N) as PREFIX.x, .y, .z. POINT in m must lie on GRID.
+static void put_points(struct arrays *arrays, const char *prefix,
+                       const struct grid *grid, const struct vector *point, int n)
 {
     uint32_t *value = NEW_ARRAY(uint32_t, n);
     for (int axis = 0; axis < 3; axis++) {

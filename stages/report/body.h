@@ -31,10 +31,6 @@ struct shown_body put_body(struct arrays *arrays, const struct run *run,
                            const struct course *course, int most_moments);
 void shown_body_free(struct shown_body *body);
 
-// POINT (N) as PREFIX.x, .y, .z. POINT in m must lie on GRID.
-void put_points(struct arrays *arrays, const char *prefix, const struct grid *grid,
-                const struct vector *point, int n);
-
 // The whole number of steps along AXIS at which POINT is. AXIS 0 to 2; rounded to the
 // nearest.
 uint32_t on_grid(const struct grid *grid, struct vector point, int axis);

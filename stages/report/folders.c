@@ -40,7 +40,8 @@ static char *joined(const char *folder, const char *name)
     return path;
 }
 
-char *find_in(const char *folder, const char *name)
+// The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
+static char *find_in(const char *folder, const char *name)
 {
     char *path = joined(folder, name);
     if (!access(path, F_OK)) return path;

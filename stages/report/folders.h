@@ -9,9 +9,6 @@
 // Whether PATH is there and a folder.
 bool is_folder(const char *path);
 
-// The path of NAME in FOLDER, or NULL where it is not there. The caller frees it.
-char *find_in(const char *folder, const char *name);
-
 // Whether it holds one that `make run` makes.
 bool has_artifact(const char *folder);
 

@@ -26,7 +26,7 @@ static int stride_of(const struct grid *grid, int axis)
                        : grid->axis[2].n * grid->axis[1].n;
 }
 
-int cell_place(const struct grid *grid, int cell, int axis)
+static int cell_place(const struct grid *grid, int cell, int axis)
 {
     return cell / stride_of(grid, axis) % grid->axis[axis].n;
 }
@@ -78,7 +78,10 @@ static void add_share(const struct grid_axis *axis, int interval, double share,
 
 // The last interval gets what is left up to 1, so that rounding of the kernel's
 // integral cannot lose mass.
-void find_shares(const struct grid_axis *axis, double at, struct shares *shares)
+// Shares sum to 1 to rounding where the kernel lies within the axis, or it repeats. AT
+// in m. A point whose kernel sticks out of the axis loses what falls outside; one far
+// outside has no shares.
+static void find_shares(const struct grid_axis *axis, double at, struct shares *shares)
 {
     shares->n = 0;
     if (axis->everywhere) {

@@ -42,14 +42,8 @@ int grid_cells(const struct grid *grid);
 double cell_centre(const struct grid *grid, int cell, int axis); // m; rad
 double cell_volume(const struct grid *grid, int cell);           // m3
 
-// The place of CELL along AXIS; the number of the cell STEP further along it, or -1.
-int cell_place(const struct grid *grid, int cell, int axis);
+// The number of the cell STEP further along AXIS, or -1.
 int cell_beside(const struct grid *grid, int cell, int axis, int step);
-
-// Shares sum to 1 to rounding where the kernel lies within the axis, or it repeats. AT
-// in m. A point whose kernel sticks out of the axis loses what falls outside; one far
-// outside has no shares. No allocation.
-void find_shares(const struct grid_axis *axis, double at, struct shares *shares);
 
 // Adds VALUE (COUNT) times the share of the point AT to SUM (n_cell, STRIDE), from
 // column 0 on. The share of a cell is the product of those along the axes. Cost: the

@@ -83,4 +83,8 @@ found_in({"stages/lib/other/other.c": "int low(void);\nint other(void);\nint oth
          "a library that the table does not name",
          "stages/lib/other/other uses low of stages/lib/low/low: not both in the table of layers: "
          "stages/lib/other, stages/lib/low")
+found_in({"stages/one/one.h": "int one(void);\n"}, "a function in a header that no other file uses",
+         "stages/one/one.c: no other file uses one")
+found_in({"stages/one/one.h": "int one(void);\n",
+          "stages/one/use.c": "int one(void);\nint use(void);\nint use(void) { return one(); }\n"}, "one that another uses")
 done()

@@ -15,7 +15,8 @@
 #include <stdio.h>
 #include <string.h>
 
-const struct parameter conditions_table[] = {FLUID_ROWS(0),
+// All keys that the section "conditions" may have.
+static const struct parameter conditions_table[] = {FLUID_ROWS(0),
                                              VAPOUR_ROWS(0),
                                              LIQUID_DENSITY_ROW(0),
                                              VISCOSITY_ROW(0),

@@ -29,9 +29,6 @@ struct conditions {
 // Nothing given: for a stage whose table has not all the rows. The gas is at 1e5 Pa.
 struct conditions conditions_unset(void);
 
-// All keys that the section "conditions" may have.
-extern const struct parameter conditions_table[];
-
 // Checks the section, NULL where a scene has none, and gives SECTION, a stage's own by
 // TABLE, what it lacks of the rows that are shared. Exits 65 as parameters_fill, with
 // WHERE in its messages.
