@@ -17,12 +17,12 @@
 
 // All keys that the section "conditions" may have.
 static const struct parameter conditions_table[] = {FLUID_ROWS(0),
-                                             VAPOUR_ROWS(0),
-                                             LIQUID_DENSITY_ROW(0),
-                                             VISCOSITY_ROW(0),
-                                             SURFACE_TENSION_ROW(0),
-                                             CONTACT_ANGLE_ROW(0, 170),
-                                             {0}};
+                                                    VAPOUR_ROWS(0),
+                                                    LIQUID_DENSITY_ROW(0),
+                                                    VISCOSITY_ROW(0),
+                                                    SURFACE_TENSION_ROW(0),
+                                                    CONTACT_ANGLE_ROW(0, 170),
+                                                    {0}};
 
 // In the order of enum fluid_property.
 static const struct {
