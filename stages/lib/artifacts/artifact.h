@@ -56,6 +56,23 @@ bool is_hdf5(const struct bytes *bytes);
 // first extent. The caller frees it.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
+// The rows of a dataset, one after the other: a band of them is held, as high as its
+// chunks are, so that each of these is unpacked once; of very long rows fewer. Going
+// back reads again.
+struct row_reader {
+    const struct artifact *artifact;
+    const char *name;
+    hid_t dataset, type; // in memory
+    int rank;
+    hsize_t extent[8];
+    size_t row_bytes;
+    hsize_t first, held, most; // rows in the band; as many fit into it
+    void *band;
+};
+struct row_reader artifact_read_rows(const struct artifact *artifact, const char *name);
+const void *artifact_row(struct row_reader *reader, int row); // until the next call
+void row_reader_free(struct row_reader *reader);
+
 // A whole dataset as doubles, whatever its type: whole numbers up to 2^53 are exact.
 // The caller frees VALUE.
 struct dataset_values {
@@ -108,6 +125,25 @@ void artifact_put(struct artifact *artifact, const char *name, const void *data,
                   int rows);
 void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
                         int rows, int columns);
+
+// The same row by row, with the same bytes, while a band of 32 rows is held. The place
+// that next_row returns is for the row to be written to. Nothing else may be put into
+// the artifact from begin to end.
+struct row_writer {
+    struct artifact *artifact;
+    const json_t *entry;
+    hid_t dataset;
+    int rank;
+    hsize_t extent[8];
+    size_t row_bytes;
+    hsize_t written, held; // rows
+    void *band;
+};
+struct row_writer artifact_begin_rows(struct artifact *artifact, const char *name,
+                                      int rows, int columns);
+void *artifact_next_row(struct row_writer *writer);
+void artifact_end_rows(struct row_writer *writer);
+
 void artifact_put_number(struct artifact *artifact, const char *name, double value);
 void artifact_put_packing(struct artifact *artifact, const struct packing *packing);
 void artifact_put_network(struct artifact *artifact, const struct network *network);

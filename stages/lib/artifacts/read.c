@@ -204,13 +204,19 @@ void artifact_close(struct artifact *artifact)
     free(artifact);
 }
 
-// Class, rank and size were checked; width and byte order are converted by HDF5. Rows
-// fit into an int: check_size refuses more.
-void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
+static const json_t *entry_of(const struct artifact *artifact, const char *name)
 {
     const json_t *entry = schema_dataset(artifact->schema, name);
     if (!entry)
         die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    return entry;
+}
+
+// Class, rank and size were checked; width and byte order are converted by HDF5. Rows
+// fit into an int: check_size refuses more.
+void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
+{
+    const json_t *entry = entry_of(artifact, name);
     const hid_t dataset = H5Dopen2(artifact->file, name, H5P_DEFAULT);
     const hid_t space = H5Dget_space(dataset);
     hsize_t extent[8] = {0};
@@ -227,6 +233,78 @@ void *artifact_get(const struct artifact *artifact, const char *name, int *rows)
     release_pages(&artifact->image);
     if (rows) *rows = (int)extent[0];
     return data;
+}
+
+// ---- row by row ---------------------------------------------------------------------
+
+// Rows of a million grains have 24 MB: then a band is a part of a chunk, which is
+// unpacked for each of its parts.
+static const size_t MOST_BAND_BYTES = 256 << 20;
+
+// As many as a chunk has; what lies in one piece can be read anywhere.
+static hsize_t rows_of_band(const struct row_reader *reader)
+{
+    enum { ROWS = 32 };
+    hsize_t chunk[8] = {ROWS};
+    const hid_t creation = H5Dget_create_plist(reader->dataset);
+    if (H5Pget_layout(creation) == H5D_CHUNKED)
+        H5Pget_chunk(creation, reader->rank, chunk);
+    H5Pclose(creation);
+    hsize_t rows = chunk[0];
+    while (rows > 1 && rows * reader->row_bytes > MOST_BAND_BYTES)
+        rows = (rows + 1) / 2;
+    return rows;
+}
+
+struct row_reader artifact_read_rows(const struct artifact *artifact, const char *name)
+{
+    struct row_reader reader = {.artifact = artifact, .name = name};
+    reader.type = entry_memory_type(entry_of(artifact, name));
+    reader.dataset = H5Dopen2(artifact->file, name, H5P_DEFAULT);
+    const hid_t space = H5Dget_space(reader.dataset);
+    reader.rank = H5Sget_simple_extent_dims(space, reader.extent, NULL);
+    H5Sclose(space);
+    reader.row_bytes = H5Tget_size(reader.type);
+    for (int axis = 1; axis < reader.rank; axis++)
+        reader.row_bytes *= reader.extent[axis];
+    reader.most = rows_of_band(&reader);
+    reader.band = allocate_uncleared(reader.most, reader.row_bytes);
+    return reader;
+}
+
+static void read_band(struct row_reader *reader, hsize_t first)
+{
+    const hsize_t left = reader->extent[0] - first;
+    hsize_t start[8] = {first}, count[8] = {left < reader->most ? left : reader->most};
+    for (int axis = 1; axis < reader->rank; axis++)
+        count[axis] = reader->extent[axis];
+    const hid_t space = H5Dget_space(reader->dataset);
+    const hid_t memory = H5Screate_simple(reader->rank, count, NULL);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    if (H5Dread(reader->dataset, reader->type, memory, space, H5P_DEFAULT,
+                reader->band) < 0)
+        die(STATUS_BAD_DATA, "%s: %s: cannot be read",
+            input_name(reader->artifact->path), reader->name);
+    H5Sclose(memory);
+    H5Sclose(space);
+    release_pages(&reader->artifact->image);
+    reader->first = first;
+    reader->held = count[0];
+}
+
+const void *artifact_row(struct row_reader *reader, int row)
+{
+    const hsize_t k = (hsize_t)row;
+    if (k < reader->first || k >= reader->first + reader->held)
+        read_band(reader, k - k % reader->most);
+    return (const char *)reader->band + (k - reader->first) * reader->row_bytes;
+}
+
+void row_reader_free(struct row_reader *reader)
+{
+    if (reader->band) H5Dclose(reader->dataset);
+    free(reader->band);
+    *reader = (struct row_reader){0};
 }
 
 static bool artifact_has(const struct artifact *artifact, const json_t *entry)

@@ -131,11 +131,10 @@ static void pack_rows(hid_t creation, hid_t memory_type, int rank,
     H5Pset_deflate(creation, fastest);
 }
 
-// The open dataset, for the caller to close once it has its attributes. A full disk may
-// show here, hence `wrote`.
-static hid_t put_array(const struct artifact *artifact, const char *name,
-                       hid_t file_type, hid_t memory_type, int rank,
-                       const hsize_t *extent, bool packed, const void *data)
+// An open dataset without values, for the caller to close once it has its attributes.
+static hid_t make_dataset(const struct artifact *artifact, const char *name,
+                          hid_t file_type, hid_t memory_type, int rank,
+                          const hsize_t *extent, bool packed)
 {
     const hid_t file = artifact->file;
     make_groups(file, name);
@@ -145,37 +144,102 @@ static hid_t put_array(const struct artifact *artifact, const char *name,
     const hid_t dataset = done(
         H5Dcreate2(file, name, file_type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
         name);
-    wrote(artifact,
-          H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
     H5Pclose(creation);
     H5Sclose(space);
     return dataset;
 }
 
-// Numbers in the schema's shape are extents; its symbols, but the first, take COLUMNS.
-// What is written is checked by artifact_finish, not here.
-void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
-                        int rows, int columns)
+// One without attributes. A full disk may show here, hence `wrote`.
+static void put_list(const struct artifact *artifact, const char *name, hid_t file_type,
+                     hid_t memory_type, int count, const void *data)
 {
-    const json_t *entry = schema_dataset(artifact->schema, name);
-    if (!entry)
-        die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    const hid_t dataset = make_dataset(artifact, name, file_type, memory_type, 1,
+                                       &(hsize_t){(hsize_t)count}, false);
+    wrote(artifact,
+          H5Dwrite(dataset, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data));
+    H5Dclose(dataset);
+}
+
+// Numbers in the schema's shape are extents; its symbols, but the first, take COLUMNS.
+static int extents_of(const json_t *entry, int rows, int columns, hsize_t *extent)
+{
     const json_t *shape = json_object_get(entry, "shape");
-    hsize_t extent[8] = {(hsize_t)rows};
+    extent[0] = (hsize_t)rows;
     for (size_t axis = 1; axis < json_array_size(shape); axis++) {
         const json_t *wanted = json_array_get(shape, axis);
         extent[axis] = json_is_integer(wanted) ? (hsize_t)json_integer_value(wanted)
                                                : (hsize_t)columns;
     }
-    const hid_t dataset =
-        put_array(artifact, name, entry_file_type(entry), entry_memory_type(entry),
-                  (int)json_array_size(shape), extent,
-                  json_is_true(json_object_get(entry, "packed")), data);
-    put_text_attribute(dataset, "units",
-                       json_string_value(json_object_get(entry, "units")));
-    put_text_attribute(dataset, "long_name",
-                       json_string_value(json_object_get(entry, "text")));
-    H5Dclose(dataset);
+    return (int)json_array_size(shape);
+}
+
+// A band of rows is as high as the chunks, so that each of these is deflated once.
+struct row_writer artifact_begin_rows(struct artifact *artifact, const char *name,
+                                      int rows, int columns)
+{
+    struct row_writer writer = {.artifact = artifact,
+                                .entry = schema_dataset(artifact->schema, name)};
+    if (!writer.entry)
+        die(STATUS_INTERNAL, "%s: not in schema %s", name, artifact->schema->name);
+    const hid_t type = entry_memory_type(writer.entry);
+    writer.rank = extents_of(writer.entry, rows, columns, writer.extent);
+    writer.dataset = make_dataset(
+        artifact, name, entry_file_type(writer.entry), type, writer.rank, writer.extent,
+        json_is_true(json_object_get(writer.entry, "packed")));
+    writer.row_bytes = H5Tget_size(type);
+    for (int axis = 1; axis < writer.rank; axis++)
+        writer.row_bytes *= writer.extent[axis];
+    return writer;
+}
+
+// Values are those in memory from row FIRST on.
+static void write_rows(struct row_writer *writer, hsize_t first, hsize_t rows,
+                       const void *data)
+{
+    hsize_t start[8] = {first}, count[8] = {rows};
+    for (int axis = 1; axis < writer->rank; axis++)
+        count[axis] = writer->extent[axis];
+    const hid_t space = H5Dget_space(writer->dataset);
+    const hid_t memory = H5Screate_simple(writer->rank, count, NULL);
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    wrote(writer->artifact, H5Dwrite(writer->dataset, entry_memory_type(writer->entry),
+                                     memory, space, H5P_DEFAULT, data));
+    H5Sclose(memory);
+    H5Sclose(space);
+}
+
+static void write_band(struct row_writer *writer)
+{
+    write_rows(writer, writer->written, writer->held, writer->band);
+    writer->written += writer->held;
+    writer->held = 0;
+}
+
+void *artifact_next_row(struct row_writer *writer)
+{
+    if (!writer->band) writer->band = allocate(PACKED_ROWS, writer->row_bytes);
+    if (writer->held == PACKED_ROWS) write_band(writer);
+    return (char *)writer->band + writer->held++ * writer->row_bytes;
+}
+
+// What is written is checked by artifact_finish, not here.
+void artifact_end_rows(struct row_writer *writer)
+{
+    if (writer->held > 0) write_band(writer);
+    put_text_attribute(writer->dataset, "units",
+                       json_string_value(json_object_get(writer->entry, "units")));
+    put_text_attribute(writer->dataset, "long_name",
+                       json_string_value(json_object_get(writer->entry, "text")));
+    H5Dclose(writer->dataset);
+    free(writer->band);
+}
+
+void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
+                        int rows, int columns)
+{
+    struct row_writer writer = artifact_begin_rows(artifact, name, rows, columns);
+    write_rows(&writer, 0, (hsize_t)rows, data);
+    artifact_end_rows(&writer);
 }
 
 void artifact_put(struct artifact *artifact, const char *name, const void *data,
@@ -285,15 +349,13 @@ void artifact_put_network(struct artifact *artifact, const struct network *netwo
 // ParaView wants a row for each part of a grid; here there is one part.
 static void put_count(const struct artifact *artifact, const char *name, int64_t count)
 {
-    H5Dclose(put_array(artifact, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1,
-                       &(hsize_t){1}, false, &count));
+    put_list(artifact, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, &count);
 }
 
 static void put_indices(const struct artifact *artifact, const char *name,
                         const int32_t *index, int count)
 {
-    H5Dclose(put_array(artifact, name, H5T_STD_I32LE, H5T_NATIVE_INT32, 1,
-                       &(hsize_t){(hsize_t)count}, false, index));
+    put_list(artifact, name, H5T_STD_I32LE, H5T_NATIVE_INT32, count, index);
 }
 
 // A byte that all have in common, and which takes no room.
