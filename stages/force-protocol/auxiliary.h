@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Auxiliary grains only give the boundary layer its nodes: they are removed at the
-// end.
+// Auxiliary grains only give the boundary layer its nodes: they are left out of what is
+// written.
 #ifndef CRAQUELURE_AUXILIARY_H
 #define CRAQUELURE_AUXILIARY_H
 
 #include "geometry/packing.h"
-#include "protocol.h"
 
-// Removes auxiliary grains, their bonds and the forces on them from PACKING and
-// PROTOCOL, in place; the others keep their order.
-void drop_auxiliary(struct packing *packing, struct protocol *protocol);
+#include <stddef.h>
+
+// PACKING without auxiliary grains and their bonds; the others keep their order. The
+// caller frees it with packing_free.
+struct packing without_auxiliary(const struct packing *packing);
+
+// Copies to TO the values, of SIZE bytes each, of the grains of PACKING that are not
+// auxiliary: FROM (n_particle).
+void copy_without_auxiliary(const struct packing *packing, const void *from,
+                            size_t size, void *to);
 
 #endif

@@ -19,13 +19,6 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-// A grain beside a throat.
-struct corner {
-    int32_t throat, grain;
-    struct vector arm;  // from the middle of the throat to the grain
-    struct vector pull; // f0, then f
-};
-
 // The displacements of a grain in three rotations of the grains around a throat,
 // orthonormal over these, or 0. Found again where they are used: kept, they would be
 // half of all memory.
@@ -33,24 +26,30 @@ struct rotations {
     struct vector of[3];
 };
 
+// Corners, a grain beside a throat each, some 33 of a grain, throat by throat.
 struct throats {
-    int n_throat, n_grain, n_corner, capacity;
-    int most;              // corners of a throat
-    struct corner *corner; // (n_corner)
-    struct vector *now;    // (n_corner) the last result of balance; NULL: none is kept
-    int *first;            // (n_throat+1) corners of each throat
-    int *begin, *corners;  // (n_grain+1) into CORNERS (n_corner): corners of each grain
-    bool *supported;       // (n_throat) a wall takes the rigid part: P is 1
-    bool *closed;          // (n_grain) the pulls on it sum to zero
+    int n_throat, n_grain, n_corner;
+    int most;            // corners of a throat
+    int *first;          // (n_throat+1) corners of each throat
+    int32_t *grain;      // (n_corner)
+    struct vector *arm;  // (n_corner) from the middle of the throat to the grain
+    struct vector *pull; // (n_corner) f0, then f
+    struct vector *now;  // (n_corner) the last result of balance; NULL: none is kept
+    int *begin, *throat; // (n_grain+1) into THROAT (n_corner): throats of each grain
+    bool *supported;     // (n_throat) a wall takes the rigid part: P is 1
+    bool *closed;        // (n_grain) the pulls on it sum to zero
+    int room[3];         // for grain, arm, pull
 };
 
 static void throats_free(struct throats *throats)
 {
-    free(throats->corner);
+    free(throats->grain);
+    free(throats->arm);
+    free(throats->pull);
     free(throats->now);
     free(throats->first);
     free(throats->begin);
-    free(throats->corners);
+    free(throats->throat);
     free(throats->supported);
     free(throats->closed);
 }
@@ -59,27 +58,35 @@ static void throats_free(struct throats *throats)
 
 // The corner of a sector, by grain and place: in a small periodic box a grain can be at
 // a throat twice, in two images.
-static struct corner *corner_of(struct throats *throats, const struct sector *sector)
+static int corner_of(struct throats *throats, const struct sector *sector)
 {
     const struct vector middle = scale(0.5, add(sector->from, sector->to));
     const struct vector arm = subtract(sector->centre, middle);
-    const int first = throats->first[sector->throat];
-    assert(throats->corner || first == throats->n_corner);
-    for (int k = first; k < throats->n_corner; k++)
-        if (throats->corner[k].grain == sector->grain &&
-            distance(throats->corner[k].arm, arm) <= 1e-6 * norm(arm))
-            return &throats->corner[k];
-    GROW_ARRAY(throats->corner, throats->n_corner, throats->capacity);
-    struct corner *corner = &throats->corner[throats->n_corner++];
-    *corner =
-        (struct corner){.throat = sector->throat, .grain = sector->grain, .arm = arm};
-    return corner;
+    const int n = throats->n_corner;
+    for (int k = throats->first[sector->throat]; k < n; k++)
+        if (throats->grain[k] == sector->grain &&
+            distance(throats->arm[k], arm) <= 1e-6 * norm(arm))
+            return k;
+    GROW_ARRAY(throats->grain, n, throats->room[0]);
+    GROW_ARRAY(throats->arm, n, throats->room[1]);
+    GROW_ARRAY(throats->pull, n, throats->room[2]);
+    throats->grain[n] = sector->grain;
+    throats->arm[n] = arm;
+    throats->pull[n] = (struct vector){0};
+    return throats->n_corner++;
 }
 
-// Walls and auxiliary grains are no corners: a throat beside them is supported.
+// Walls and auxiliary grains are no corners: a throat beside them is supported. Nearly
+// every corner has two sides; room that grew would leave holes behind.
 static void find_corners(struct throats *throats, struct sectors *sectors,
                          enum form form)
 {
+    const int room = (int)(sectors->offset[throats->n_throat] / 2);
+    throats->grain = NEW_ARRAY(int32_t, room);
+    throats->arm = NEW_ARRAY(struct vector, room);
+    throats->pull = NEW_ARRAY(struct vector, room);
+    for (int k = 0; k < 3; k++)
+        throats->room[k] = room;
     for (int t = 0; t < throats->n_throat; t++) {
         throats->first[t] = throats->n_corner;
         const int n = sectors_at(sectors, t);
@@ -89,28 +96,44 @@ static void find_corners(struct throats *throats, struct sectors *sectors,
                 !is_auxiliary(&sectors->network->packing, sector->grain);
             if (!is_grain || sector->beyond < 0) throats->supported[t] = true;
             if (!is_grain) continue;
-            struct corner *corner = corner_of(throats, sector);
-            corner->pull = add(corner->pull, pull_of(form)(sectors, sector, NULL));
+            const int corner = corner_of(throats, sector); // the arrays may move
+            throats->pull[corner] =
+                add(throats->pull[corner], pull_of(form)(sectors, sector, NULL));
         }
         if (throats->n_corner - throats->first[t] > throats->most)
             throats->most = throats->n_corner - throats->first[t];
     }
-    throats->corner =
-        reallocate(throats->corner, (size_t)throats->n_corner, sizeof *throats->corner);
+    const size_t n = (size_t)throats->n_corner;
+    throats->grain = reallocate(throats->grain, n, sizeof *throats->grain);
+    throats->arm = reallocate(throats->arm, n, sizeof *throats->arm);
+    throats->pull = reallocate(throats->pull, n, sizeof *throats->pull);
     throats->first[throats->n_throat] = throats->n_corner;
 }
 
 static void list_by_grain(struct throats *throats)
 {
     for (int k = 0; k < throats->n_corner; k++)
-        throats->begin[throats->corner[k].grain + 1]++;
+        throats->begin[throats->grain[k] + 1]++;
     for (int i = 0; i < throats->n_grain; i++)
         throats->begin[i + 1] += throats->begin[i];
-    throats->corners = NEW_ARRAY(int, throats->n_corner);
+    throats->throat = NEW_ARRAY(int, throats->n_corner);
     int *next = duplicate(throats->begin, (size_t)throats->n_grain + 1, sizeof *next);
-    for (int k = 0; k < throats->n_corner; k++)
-        throats->corners[next[throats->corner[k].grain]++] = k;
+    for (int t = 0; t < throats->n_throat; t++)
+        for (int k = throats->first[t]; k < throats->first[t + 1]; k++)
+            throats->throat[next[throats->grain[k]]++] = t;
     free(next);
+}
+
+// The corner of GRAIN at the throat that is in place K of the lists by grain. A throat
+// that is there twice has two corners of it, in the same order.
+static int corner_at(const struct throats *throats, int grain, int k)
+{
+    const int throat = throats->throat[k];
+    int corner = throats->first[throat], before = k;
+    while (before > throats->begin[grain] && throats->throat[before - 1] == throat)
+        before--;
+    for (;; corner++)
+        if (throats->grain[corner] == grain && before++ == k) return corner;
 }
 
 static void find_closed(struct throats *throats)
@@ -119,7 +142,7 @@ static void find_closed(struct throats *throats)
         struct vector sum = {0};
         double sizes = 0;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++) {
-            const struct vector pull = throats->corner[throats->corners[k]].pull;
+            const struct vector pull = throats->pull[corner_at(throats, i, k)];
             sum = add(sum, pull);
             sizes += norm(pull);
         }
@@ -129,11 +152,11 @@ static void find_closed(struct throats *throats)
 
 // --- rigid motions -----------------------------------------------------------------
 
-static struct vector mean_arm(const struct corner *corner, int n)
+static struct vector mean_arm(const struct vector *arm, int n)
 {
     struct vector sum = {0};
     for (int c = 0; c < n; c++)
-        sum = add(sum, corner[c].arm);
+        sum = add(sum, arm[c]);
     return scale(1.0 / n, sum);
 }
 
@@ -152,18 +175,17 @@ static void orthogonalise(struct rotations *rotations, int n, int k)
 
 // ROTATIONS (n) become orthonormal, about the mean place. Grains in one line have two,
 // one grain none.
-static void find_rotations(const struct corner *corner, int n,
-                           struct rotations *rotations)
+static void find_rotations(const struct vector *arm, int n, struct rotations *rotations)
 {
-    const struct vector middle = mean_arm(corner, n);
+    const struct vector middle = mean_arm(arm, n);
     double reach = 0;
     for (int c = 0; c < n; c++)
-        reach = fmax(reach, norm(corner[c].arm));
+        reach = fmax(reach, norm(arm[c]));
     for (int k = 0; k < 3; k++) {
         struct vector axis = {0};
         set_component(&axis, k, 1);
         for (int c = 0; c < n; c++)
-            rotations[c].of[k] = cross(axis, subtract(corner[c].arm, middle));
+            rotations[c].of[k] = cross(axis, subtract(arm[c], middle));
         orthogonalise(rotations, n, k);
         double size = 0;
         for (int c = 0; c < n; c++)
@@ -175,12 +197,12 @@ static void find_rotations(const struct corner *corner, int n,
 }
 
 // Removes the rigid part of NOW (n). ROTATIONS (n): workspace.
-static void project(const struct corner *corner, int n, struct rotations *rotations,
+static void project(const struct vector *arm, int n, struct rotations *rotations,
                     struct vector *now)
 {
     struct vector mean = {0};
     double share[3] = {0};
-    find_rotations(corner, n, rotations);
+    find_rotations(arm, n, rotations);
     for (int c = 0; c < n; c++) {
         mean = add(mean, scale(1.0 / n, now[c]));
         for (int k = 0; k < 3; k++)
@@ -202,12 +224,13 @@ static void balance(struct throats *throats, const struct vector *multiplier)
         struct rotations *rotations = NEW_ARRAY(struct rotations, throats->most);
 #pragma omp for
         for (int t = 0; t < throats->n_throat; t++) {
-            const int n = throats->first[t + 1] - throats->first[t];
-            const struct corner *corner = &throats->corner[throats->first[t]];
-            struct vector *now = &throats->now[throats->first[t]];
-            for (int c = 0; c < n; c++)
-                now[c] = subtract(corner[c].pull, multiplier[corner[c].grain]);
-            if (!throats->supported[t]) project(corner, n, rotations, now);
+            const int first = throats->first[t], end = throats->first[t + 1];
+            for (int k = first; k < end; k++)
+                throats->now[k] =
+                    subtract(throats->pull[k], multiplier[throats->grain[k]]);
+            if (!throats->supported[t])
+                project(throats->arm + first, end - first, rotations,
+                        throats->now + first);
         }
         free(rotations);
     }
@@ -223,7 +246,7 @@ static void sum_up(const struct throats *throats, struct vector *sum)
         sum[i] = (struct vector){0};
         if (!throats->closed[i]) continue;
         for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
-            sum[i] = add(sum[i], throats->now[throats->corners[k]]);
+            sum[i] = add(sum[i], throats->now[corner_at(throats, i, k)]);
     }
 }
 
@@ -239,20 +262,19 @@ static void add_projection(const struct rotations *rotations, int row, int colum
                         component(rotations[column].of[k], a % 3);
 }
 
-// Adds to the open row what comes from the throat of the corner ROW, of all corners.
-static void add_throat(const struct throats *throats, int row,
+// Adds to the open row what comes from throat T, of whose corners ROW is one.
+static void add_throat(const struct throats *throats, int t, int row,
                        struct rotations *rotations, struct block_rows *rows)
 {
-    const int t = throats->corner[row].throat, first = throats->first[t];
-    const int n = throats->first[t + 1] - first;
-    const struct corner *corner = &throats->corner[first];
+    const int first = throats->first[t], n = throats->first[t + 1] - first;
     const bool supported = throats->supported[t];
-    if (!supported) find_rotations(corner, n, rotations);
+    if (!supported) find_rotations(throats->arm + first, n, rotations);
     for (int c = 0; c < n; c++) {
-        if (!throats->closed[corner[c].grain]) continue;
+        const int grain = throats->grain[first + c];
+        if (!throats->closed[grain]) continue;
         if (supported && c != row - first) continue;
         add_projection(rotations, row - first, c, n, supported,
-                       block_rows_at(rows, corner[c].grain));
+                       block_rows_at(rows, grain));
     }
 }
 
@@ -264,7 +286,8 @@ static struct block_rows assemble(const struct throats *throats)
     for (int i = 0; i < throats->n_grain; i++) {
         if (throats->closed[i])
             for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
-                add_throat(throats, throats->corners[k], rotations, &rows);
+                add_throat(throats, throats->throat[k], corner_at(throats, i, k),
+                           rotations, &rows);
         block_rows_end_row(&rows);
     }
     free(rotations);
@@ -285,7 +308,7 @@ static double pulls_squared(const struct throats *throats)
 {
     double sum = 0;
     for (int k = 0; k < throats->n_corner; k++)
-        sum += dot(throats->corner[k].pull, throats->corner[k].pull);
+        sum += dot(throats->pull[k], throats->pull[k]);
     return sum;
 }
 
@@ -326,8 +349,7 @@ static double change_of(const struct throats *throats)
 {
     double sum = 0;
     for (int k = 0; k < throats->n_corner; k++) {
-        const struct corner *corner = &throats->corner[k];
-        const struct vector change = subtract(throats->now[k], corner->pull);
+        const struct vector change = subtract(throats->now[k], throats->pull[k]);
         sum += dot(change, change);
     }
     const double all = pulls_squared(throats);
@@ -346,14 +368,30 @@ static enum status balance_pulls(struct throats *throats, double *change,
         status = find_multipliers(throats, multiplier, reason);
         balance(throats, multiplier);
         *change = change_of(throats);
-        for (int k = 0; k < throats->n_corner; k++)
-            throats->corner[k].pull = throats->now[k];
+        free(throats->pull);
+        throats->pull = throats->now;
+        throats->now = NULL;
     }
     free(multiplier);
     return status;
 }
 
-enum status find_balanced_patches(struct sectors *sectors, enum form form,
+// By grain, and of each grain by throat.
+static struct patches patches_of(const struct throats *throats)
+{
+    struct patches patches = {.patch = NEW_ARRAY(struct patch, throats->n_corner),
+                              .begin = NEW_ARRAY(int, throats->n_grain + 1),
+                              .capacity = throats->n_corner};
+    for (int i = 0; i < throats->n_grain; i++) {
+        for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
+            patches_add(&patches, throats->throat[k], i,
+                        throats->pull[corner_at(throats, i, k)]);
+        patches.begin[i + 1] = patches.n;
+    }
+    return patches;
+}
+
+enum status find_balanced_patches(struct sectors *sectors, enum form form, bool last,
                                   struct patches *patches, double *change,
                                   struct reason *reason)
 {
@@ -366,16 +404,14 @@ enum status find_balanced_patches(struct sectors *sectors, enum form form,
                               .supported = NEW_ARRAY(bool, n_throat),
                               .closed = NEW_ARRAY(bool, n_grain)};
     find_corners(&throats, sectors, form);
+    if (last) sectors_free_sides(sectors);
     list_by_grain(&throats);
     find_closed(&throats);
     const enum status status = balance_pulls(&throats, change, reason);
     free(throats.now);
-    throats.now = NULL;
-    *patches = (struct patches){0};
-    for (int k = 0; k < throats.n_corner && !status; k++)
-        patches_add(patches, throats.corner[k].throat, throats.corner[k].grain,
-                    throats.corner[k].pull);
+    free(throats.arm);
+    throats.now = throats.arm = NULL;
+    *patches = status ? (struct patches){0} : patches_of(&throats);
     throats_free(&throats);
-    patches_sort(patches, n_grain);
     return status;
 }

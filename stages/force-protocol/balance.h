@@ -14,10 +14,13 @@
 // in menisci, whose pull is missing. Where it is in balance, as on cubic lattices, the
 // pulls come back unchanged, to the last bit.
 //
+// If they are the LAST to ask for sectors, sectors_free_sides is called as soon as
+// these are not needed, before it takes the most memory.
+//
 // CHANGE becomes the root mean square of the change, relative to that of the pulls.
 // STATUS_NOT_CONVERGED when conjugate gradients stall. OpenMP, the same digits for any
 // number of threads. The caller frees PATCHES, also after a failure.
-enum status find_balanced_patches(struct sectors *sectors, enum form form,
+enum status find_balanced_patches(struct sectors *sectors, enum form form, bool last,
                                   struct patches *patches, double *change,
                                   struct reason *reason);
 

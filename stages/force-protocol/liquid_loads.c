@@ -258,25 +258,36 @@ void liquid_loads_to_end_of_step(struct liquid_loads *liquid)
     find_suction(liquid);
 }
 
+// How far TIME is on the way from STEP to the next, which is later than TIME.
+static double share_at(const struct drying_record *record, int step, double time)
+{
+    const double begin = record->time[step];
+    return fmax(0, (time - begin) / (record->time[step + 1] - begin));
+}
+
 void liquid_loads_to(struct liquid_loads *liquid, double time)
 {
     while (!is_at_last_step(liquid) && step_time(liquid, liquid->step + 1) <= time)
         step_on(liquid);
-    liquid->share = 0;
-    if (!is_at_last_step(liquid)) {
-        const double begin = step_time(liquid, liquid->step);
-        const double length = step_time(liquid, liquid->step + 1) - begin;
-        liquid->share = fmax(0, (time - begin) / length); // the next is later than TIME
-    }
+    liquid->share = is_at_last_step(liquid)
+                        ? 0
+                        : share_at(&liquid->record->drying, liquid->step, time);
     find_suction(liquid);
 }
 
-double liquid_loads_saturation(const struct liquid_loads *liquid)
+double *saturations_at(const struct drying_record *record, const double *times, int n)
 {
-    const double *saturation = liquid->record->drying.saturation;
-    const double before = saturation[liquid->step];
-    if (is_at_last_step(liquid)) return before;
-    return before + liquid->share * (saturation[liquid->step + 1] - before);
+    double *saturation = NEW_ARRAY(double, n);
+    for (int m = 0, step = 0; m < n; m++) {
+        while (step + 1 < record->n_step && record->time[step + 1] <= times[m])
+            step++;
+        const double before = record->saturation[step];
+        saturation[m] = before;
+        if (step + 1 < record->n_step)
+            saturation[m] += share_at(record, step, times[m]) *
+                             (record->saturation[step + 1] - before);
+    }
+    return saturation;
 }
 
 // --- what it does ------------------------------------------------------------------

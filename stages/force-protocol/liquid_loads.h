@@ -89,8 +89,8 @@ void liquid_loads_to_end_of_step(struct liquid_loads *liquid);
 // Goes to TIME (s), which must not be before the present step.
 void liquid_loads_to(struct liquid_loads *liquid, double time);
 
-// Saturation of the network, interpolated.
-double liquid_loads_saturation(const struct liquid_loads *liquid);
+// Saturation of the network at N increasing TIMES (s). The caller frees it.
+double *saturations_at(const struct drying_record *record, const double *times, int n);
 
 // The loads of THROAT now, in the units of enum load.
 void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS]);

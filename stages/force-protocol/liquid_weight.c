@@ -73,23 +73,15 @@ double liquid_density(const struct network *network, const struct drying_record 
     return volume > 0 ? mass / volume : 0;
 }
 
-double *liquid_masses(const struct process *process, const struct protocol *protocol,
-                      double gravity)
+void liquid_masses(const struct liquid_loads *liquid, const struct patches *shares,
+                   double gravity, double *mass)
 {
-    const size_t n = (size_t)process->network->packing.n_particle;
-    const struct patches *shares = &process->loads->patches[LOAD_WEIGHT];
-    double *mass = NEW_ARRAY(double, (size_t)protocol->n_time *n);
-    struct liquid_loads liquid =
-        liquid_loads_begin(process->network, process->record, process->law);
-    for (int m = 0; m < protocol->n_time; m++) {
-        liquid_loads_to(&liquid, protocol->time[m]);
-        for (int k = 0; k < shares->n; k++) {
-            double load[LOADS];
-            liquid_loads_at(&liquid, shares->patch[k].throat, load);
-            mass[(size_t)m * n + (size_t)shares->patch[k].particle] -=
-                load[LOAD_WEIGHT] * shares->patch[k].pull.z / gravity;
-        }
+    for (int i = 0; i < liquid->network->packing.n_particle; i++)
+        mass[i] = 0;
+    for (int k = 0; k < shares->n; k++) {
+        double load[LOADS];
+        liquid_loads_at(liquid, shares->patch[k].throat, load);
+        mass[shares->patch[k].particle] -=
+            load[LOAD_WEIGHT] * shares->patch[k].pull.z / gravity;
     }
-    liquid_loads_free(&liquid);
-    return mass;
 }

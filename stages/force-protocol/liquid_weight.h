@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_LIQUID_WEIGHT_H
 #define CRAQUELURE_LIQUID_WEIGHT_H
 
-#include "protocol.h"
+#include "liquid_loads.h"
 #include "solid_angle_patches.h"
 
 // The share of each grain in the liquid of a throat, as a pull towards -z; those of one
@@ -16,9 +16,9 @@ struct patches find_liquid_shares(struct sectors *sectors);
 double liquid_density(const struct network *network, const struct drying_record *record,
                       double mass);
 
-// Mass of liquid around each grain at each time of the protocol, (n_time * n_particle)
-// kg. With GRAVITY > 0, that of the law. The caller frees it.
-double *liquid_masses(const struct process *process, const struct protocol *protocol,
-                      double gravity);
+// MASS (n_particle) becomes that of the liquid around each grain now, kg, by its
+// SHARES. With GRAVITY > 0, that of the law.
+void liquid_masses(const struct liquid_loads *liquid, const struct patches *shares,
+                   double gravity, double *mass);
 
 #endif

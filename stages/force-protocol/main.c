@@ -4,8 +4,9 @@
 // In this order: read the network; complete the liquid from the drying; find the law of
 // suction; find the sectors around throats, and from them what each throat's load does
 // to each grain, and the rings (find_action); read the drying, and find the weight of
-// the liquid; choose the times and sum the loads at each (find_protocol); leave out
-// auxiliary grains; write.
+// the liquid; choose the times (choose_times); write the packing, sum the loads at each
+// time and write the forces at once (put_forces), without auxiliary grains; write what
+// was found out on the way.
 //
 // For a liquid with surface tension gamma and contact angle theta
 //
@@ -23,7 +24,7 @@
 // and is found once; what the liquid does (its loads) changes with time. So a force is
 // a short sum at each time. The drying is read when the balance of the patches, which
 // takes the most memory, is over. Auxiliary grains bound cells and must be there until
-// all forces are summed. The size of the result is checked before it is allocated.
+// all forces are summed. The size of the result is checked before anything is written.
 #include "artifacts/artifact.h"
 #include "artifacts/body_size.h"
 #include "artifacts/liquid.h"
@@ -235,12 +236,15 @@ static enum status find_action(struct sectors *sectors,
         return refuse(reason, STATUS_BAD_DATA,
                       "/faces/particles: form=arcs needs the network of a layer "
                       "(tessellate.dimensions=2)");
+    const bool has_rings = law.rule != RING_NONE && law.rule != RING_DRYING;
+    const bool is_last =
+        !(parameters->contact_angle > 0) && !(parameters->gravity > 0) && !has_rings;
     *loads = (struct throat_loads){.scale = parameters->force_scale};
     *rings = (struct pendular_rings){0};
     struct patches *of = loads->patches;
     if (parameters->balanced) {
         const enum status status =
-            find_balanced_patches(sectors, (enum form)parameters->form,
+            find_balanced_patches(sectors, (enum form)parameters->form, is_last,
                                   &of[LOAD_SUCTION], &loads->balance_change, reason);
         if (status) return status;
     } else
@@ -254,7 +258,7 @@ static enum status find_action(struct sectors *sectors,
             drop_patches_in_walls(sectors, open_walls, &of[l]);
     }
     if (parameters->gravity > 0) of[LOAD_WEIGHT] = find_liquid_shares(sectors);
-    if (law.rule == RING_NONE || law.rule == RING_DRYING) return STATUS_OK;
+    if (!has_rings) return STATUS_OK;
     const enum status status = find_pendular_rings(sectors, &law, rings, reason);
     of[LOAD_EMPTINESS] = rings->patches;
     return status;
@@ -274,8 +278,9 @@ static void refuse_size(const struct force_parameters *parameters, double times,
 }
 
 // Three doubles a grain and time for the force, one more for the mass of the liquid.
-static struct protocol find_protocol(const struct process *process,
-                                     const struct force_parameters *parameters)
+// The caller frees the times.
+static double *choose_times(const struct process *process,
+                            const struct force_parameters *parameters, int *n_time)
 {
     const double grains = process->network->packing.n_particle;
     const double bytes = parameters->gravity > 0 ? 32 : 24; // a grain and time
@@ -286,37 +291,73 @@ static struct protocol find_protocol(const struct process *process,
     else if (count <= most)
         times = uniform_times(&process->record->drying, (int)count);
     if (!times) refuse_size(parameters, count, bytes * grains, grains);
-    struct protocol protocol = protocol_init(process, times, (int)count);
-    if (parameters->gravity > 0)
-        protocol.liquid = liquid_masses(process, &protocol, parameters->gravity);
-    return protocol;
+    *n_time = (int)count;
+    return times;
 }
 
 // What is said of the forces.
 struct findings {
-    double largest, change, error; // N
+    struct measures measures;
+    double error; // N, of interpolation
     double net_force, net_moment;
     double field_error; // NAN: there is no field, or no more than two snapshots of it
 };
 
-// The interpolation error is found at times between those chosen, where the forces are
-// summed once more.
-static struct findings examine(const struct process *process,
-                               const struct protocol *protocol, const char *path)
+static struct findings find(const struct protocol *protocol)
+{
+    const struct measures *measures = &protocol->measures;
+    const struct process *process = protocol->process;
+    return (struct findings){
+        .measures = *measures,
+        .error = protocol->interpolation.worst,
+        .net_force = net_force(measures),
+        .net_moment = net_moment(measures, &process->network->packing),
+        .field_error =
+            process->law->rule == SUCTION_FIELD ? field_error(&protocol->liquid) : NAN};
+}
+
+// A time after the other, N_PARTICLE grains written of each.
+static struct findings put_forces(struct artifact *artifact,
+                                  const struct process *process, const double *time,
+                                  int n_time, int n_particle, const char *path)
 {
     const struct packing *packing = &process->network->packing;
-    struct findings found = {.largest = largest_force(protocol, packing->n_particle)};
-    if (!(found.largest <= 1e150))
-        die(STATUS_BAD_DATA,
-            "%s: the forces overflow at a capillary pressure of %g Pa and "
-            "force_scale = %g",
-            input_name(path), process->law->uniform, process->loads->scale);
-    found.change = largest_change(protocol, packing->n_particle);
-    found.error = interpolation_error(process, protocol);
-    found.field_error =
-        process->law->rule == SUCTION_FIELD ? process_field_error(process) : NAN;
-    net_load(protocol, packing, &found.net_force, &found.net_moment);
+    struct protocol protocol = protocol_begin(process, time, n_time);
+    struct row_writer rows =
+        artifact_begin_rows(artifact, "/force", n_time, n_particle);
+    while (protocol_next(&protocol)) {
+        if (!(protocol.measures.force <= 1e150))
+            die(STATUS_BAD_DATA,
+                "%s: the forces overflow at a capillary pressure of %g Pa and "
+                "force_scale = %g",
+                input_name(path), process->law->uniform, process->loads->scale);
+        copy_without_auxiliary(packing, protocol.force, sizeof *protocol.force,
+                               artifact_next_row(&rows));
+    }
+    artifact_end_rows(&rows);
+    const struct findings found = find(&protocol);
+    protocol_free(&protocol);
     return found;
+}
+
+static void put_liquid_masses(struct artifact *artifact, const struct process *process,
+                              const double *time, int n_time, int n_particle,
+                              double gravity)
+{
+    const struct packing *packing = &process->network->packing;
+    double *mass = NEW_ARRAY(double, packing->n_particle);
+    struct liquid_loads liquid =
+        liquid_loads_begin(process->network, process->record, process->law);
+    struct row_writer rows =
+        artifact_begin_rows(artifact, "/liquid_mass", n_time, n_particle);
+    for (int m = 0; m < n_time; m++) {
+        liquid_loads_to(&liquid, time[m]);
+        liquid_masses(&liquid, &process->loads->patches[LOAD_WEIGHT], gravity, mass);
+        copy_without_auxiliary(packing, mass, sizeof *mass, artifact_next_row(&rows));
+    }
+    artifact_end_rows(&rows);
+    liquid_loads_free(&liquid);
+    free(mass);
 }
 
 // Changes and errors over the largest force, so that they are numbers without a unit.
@@ -324,11 +365,12 @@ static void put_summary(struct artifact *artifact, const struct process *process
                         const struct findings *found, double gravity,
                         const struct artifact *input)
 {
-    const double unit = found->largest > 0 ? found->largest : 1;
+    const double largest = found->measures.force, unit = largest > 0 ? largest : 1;
     artifact_put_number(artifact, "/summary/capillary_pressure", process->law->uniform);
     artifact_put_number(artifact, "/summary/force_scale", process->loads->scale);
-    artifact_put_number(artifact, "/summary/largest_force", found->largest);
-    artifact_put_number(artifact, "/summary/largest_change", found->change / unit);
+    artifact_put_number(artifact, "/summary/largest_force", largest);
+    artifact_put_number(artifact, "/summary/largest_change",
+                        found->measures.change / unit);
     artifact_put_number(artifact, "/summary/interpolation_error", found->error / unit);
     if (!isnan(found->field_error))
         artifact_put_number(artifact, "/summary/field_error", found->field_error);
@@ -393,25 +435,26 @@ static void describe(const struct force_parameters *parameters, const char *diff
 }
 
 // LIQUID is what the forces were computed with, for the stages behind.
-static void write_forces(const struct protocol *protocol, const struct process *process,
-                         const struct findings *found, double gravity,
-                         const struct liquid_properties *liquid, const char *model,
-                         const struct invocation *invocation,
+static void write_forces(const struct process *process, const double *time, int n_time,
+                         double gravity, const struct liquid_properties *liquid,
+                         const char *model, const struct invocation *invocation,
                          const struct artifact *input)
 {
-    const struct packing *packing = &process->network->packing;
+    struct packing packing = without_auxiliary(&process->network->packing);
+    double *saturation = saturations_at(&process->record->drying, time, n_time);
     struct artifact *artifact = artifact_create("forces", invocation->output);
-    artifact_put_packing(artifact, packing);
+    artifact_put_packing(artifact, &packing);
     artifact_put_liquid(artifact, liquid);
-    artifact_put(artifact, "/time", protocol->time, protocol->n_time);
-    artifact_put(artifact, "/saturation", protocol->saturation, protocol->n_time);
-    artifact_put_table(artifact, "/force", protocol->force, protocol->n_time,
-                       packing->n_particle);
-    if (protocol->liquid)
-        artifact_put_table(artifact, "/liquid_mass", protocol->liquid, protocol->n_time,
-                           packing->n_particle);
-    put_summary(artifact, process, found, gravity, input);
+    artifact_put(artifact, "/time", time, n_time);
+    artifact_put(artifact, "/saturation", saturation, n_time);
+    const struct findings found =
+        put_forces(artifact, process, time, n_time, packing.n_particle, input->path);
+    if (gravity > 0)
+        put_liquid_masses(artifact, process, time, n_time, packing.n_particle, gravity);
+    put_summary(artifact, process, &found, gravity, input);
     artifact_finish(artifact, invocation, one_input(input), model);
+    packing_free(&packing);
+    free(saturation);
 }
 
 // Times by largest_change are found only from the drying: as many as uniform ones are
@@ -435,6 +478,7 @@ int main(int argc, char **argv)
     if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "drying");
     struct network network = artifact_get_periodic_network(input);
+    forget_throat_shapes(&network); // a third of it
     char difference[300], model[1400];
     complete_liquid(&parameters, input, difference, sizeof difference);
     struct suction_law law = find_law(&network, &parameters, input->path);
@@ -465,17 +509,16 @@ int main(int argc, char **argv)
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     find_weight(&network, &record, parameters.gravity, input, &law);
     const struct process process = {&network, &record, &law, &loads};
-    struct protocol protocol = find_protocol(&process, &parameters);
-    const struct findings found = examine(&process, &protocol, input->path);
-    drop_auxiliary(&network.packing, &protocol);
+    int n_time;
+    double *time = choose_times(&process, &parameters, &n_time);
     describe(&parameters, difference, &rings, model, sizeof model);
     struct liquid_properties liquid = artifact_get_liquid(input);
     liquid.surface_tension = parameters.surface_tension;
     liquid.contact_angle = parameters.contact_angle;
-    write_forces(&protocol, &process, &found, parameters.gravity, &liquid, model,
+    write_forces(&process, time, n_time, parameters.gravity, &liquid, model,
                  &invocation, input);
 
-    protocol_free(&protocol);
+    free(time);
     throat_loads_free(&loads);
     free_record(&record);
     network_free(&network);

@@ -1,54 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Capillary forces on the grains over time, from the liquid in each throat [K 3.6,
-// 5.2, 5.3].
+// 5.2, 5.3]: one time after the other, so that those of all times need no memory.
 #ifndef CRAQUELURE_PROTOCOL_H
 #define CRAQUELURE_PROTOCOL_H
 
-#include "throat_loads.h"
+#include "interpolation.h"
+#include "measures.h"
 
-// Everything that determines the forces of one run. It owns nothing.
-struct process {
-    const struct network *network;
-    const struct liquid_record *record;
-    const struct suction_law *law;
-    const struct throat_loads *loads;
-};
-
-// It owns its arrays. Row m of .force and .liquid is of time m: grain i is at
-// m n_particle + i.
+// It owns its arrays, not PROCESS and TIME.
 struct protocol {
+    const struct process *process;
+    const double *time; // (n_time) s, increasing
     int n_time;
-    double *time, *saturation; // (n_time) s, 1
-    struct vector *force;      // (n_time * n_particle) N
-    double *liquid;            // (n_time * n_particle) kg around each grain; NULL: it
-                               // weighs nothing
+    int row;                       // the time that .force is of; -1: before the first
+    struct vector *force, *former; // (n_particle) N, at that time and the one before
+    struct liquid_loads liquid;    // at that time
+    struct measures measures;      // of all times so far
+    struct interpolation interpolation; // the same
 };
 
-// The forces at N_TIME increasing TIMES (s), which the protocol takes over. Between
-// steps of the drying they are linear in time, except with SUCTION_FIELD. OpenMP. The
-// caller frees with protocol_free.
-struct protocol protocol_init(const struct process *process, double *times, int n_time);
+// The forces at N_TIME increasing times, at least 2; those and PROCESS must live as
+// long. Between steps of the drying forces are linear in time, except with
+// SUCTION_FIELD. The caller frees with protocol_free.
+struct protocol protocol_begin(const struct process *process, const double *time,
+                               int n_time);
 void protocol_free(struct protocol *protocol);
 
-// The largest force on a grain at any time (N).
-double largest_force(const struct protocol *protocol, int n_particle);
-
-// The largest change of a force on a grain from one time to the next (N).
-double largest_change(const struct protocol *protocol, int n_particle);
-
-// The largest distance (N) between the force on a grain and the one interpolated
-// between two times: measured at all steps of the drying, on both sides where forces
-// jump.
-double interpolation_error(const struct process *process,
-                           const struct protocol *protocol);
-
-// field_error of the process; for SUCTION_FIELD.
-double process_field_error(const struct process *process);
-
-// The largest net force, and net moment about the middle of the box, at any time, each
-// relative to the largest sum of magnitudes of its parts. In a periodic box the moment
-// is not defined: 0.
-void net_load(const struct protocol *protocol, const struct packing *packing,
-              double *force, double *moment);
+// Goes to the next time; false: there is none. OpenMP.
+bool protocol_next(struct protocol *protocol);
 
 #endif

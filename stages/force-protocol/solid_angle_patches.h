@@ -55,8 +55,8 @@ struct patches collect_patches(struct sectors *sectors, pull_of_sector *make,
                                const void *context);
 void patches_free(struct patches *patches);
 
-// Adds PULL to what THROAT does to GRAIN; throats in rising order. When all are there,
-// by grain.
+// Adds PULL to what THROAT does to GRAIN: throats in rising order, of any grain or of
+// one grain after the other. In the first case patches_sort must follow.
 void patches_add(struct patches *patches, int throat, int grain, struct vector pull);
 void patches_sort(struct patches *patches, int n_particle);
 

@@ -16,11 +16,15 @@
 #include <stdlib.h>
 
 // A throat, the K-th of a face's loop, seen from the grain on one side of the face.
+// There are some 66 a grain: 8 bytes each.
 struct side {
-    int32_t face, k;
-    uint8_t which; // side of the face
-    bool turned;   // the loop runs clockwise seen from beyond
+    int32_t face;
+    uint32_t which : 1;  // side of the face
+    uint32_t turned : 1; // the loop runs clockwise seen from beyond
+    uint32_t k : 30;
 };
+
+static const unsigned MOST_K = (1u << 30) - 1; // of .k
 
 // --- faces -------------------------------------------------------------------------
 
@@ -93,16 +97,16 @@ static void add_side(struct sectors *sectors, int throat, const struct side *sid
     const int32_t *grains = network->face_particles[side->face];
     const int count = corners_of(network, side->face);
     const int64_t begin = network->face_offset[side->face];
-    const int next = (side->k + 1) % count;
+    const int k = (int)side->k, next = (k + 1) % count;
     struct sector *sector = append(sectors, n);
-    *sector = (struct sector){
-        .throat = throat,
-        .grain = grains[side->which],
-        .beyond = grains[!side->which],
-        .face = side->face,
-        .centre = centre_of(network, side->face, side->which),
-        .from = face_corner(network, begin + (side->turned ? next : side->k)),
-        .to = face_corner(network, begin + (side->turned ? side->k : next))};
+    *sector =
+        (struct sector){.throat = throat,
+                        .grain = grains[side->which],
+                        .beyond = grains[!side->which],
+                        .face = side->face,
+                        .centre = centre_of(network, side->face, side->which),
+                        .from = face_corner(network, begin + (side->turned ? next : k)),
+                        .to = face_corner(network, begin + (side->turned ? k : next))};
     if (sectors->layer) {
         sector->beyond = -1;
         sector->centre.y = sector->from.y; // grains and throats are staggered
@@ -270,7 +274,7 @@ static enum status find_throats(const struct network *network, int **throats,
 }
 
 // Counts the grains on the sides of FACE.
-static int sides_of(const struct sectors *sectors, int face)
+static unsigned sides_of(const struct sectors *sectors, int face)
 {
     return sectors->layer || sectors->network->face_particles[face][1] < 0 ? 1 : 2;
 }
@@ -288,13 +292,13 @@ static void sort_sides(struct sectors *sectors, const int *throats)
     int64_t *next = duplicate(sectors->offset, (size_t)n + 1, sizeof *next);
     sectors->side = NEW_ARRAY(struct side, sectors->offset[n]);
     for (int face = 0; face < network->n_face; face++)
-        for (int which = 0; which < sides_of(sectors, face); which++) {
+        for (unsigned which = 0; which < sides_of(sectors, face); which++) {
             const bool turned = sectors->layer ? is_cell_turned(network, face)
-                                               : is_turned(network, face, which);
+                                               : is_turned(network, face, (int)which);
             const int *loop = throats + network->face_offset[face];
-            for (int k = 0; k < corners_of(network, face); k++)
+            for (unsigned k = 0; k < (unsigned)corners_of(network, face); k++)
                 sectors->side[next[loop[k]]++] =
-                    (struct side){face, k, (uint8_t)which, turned};
+                    (struct side){face, which & 1, turned, k & MOST_K};
         }
     free(next);
 }
@@ -373,10 +377,17 @@ enum status sectors_find(const struct network *network, struct sectors *sectors,
     return status;
 }
 
-void sectors_free(struct sectors *sectors)
+void sectors_free_sides(struct sectors *sectors)
 {
     free(sectors->side);
     free(sectors->offset);
+    sectors->side = NULL;
+    sectors->offset = NULL;
+}
+
+void sectors_free(struct sectors *sectors)
+{
+    sectors_free_sides(sectors);
     free(sectors->open);
     free(sectors->surface);
     free(sectors->sector);

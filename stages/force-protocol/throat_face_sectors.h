@@ -44,6 +44,8 @@ struct sectors {
 enum status sectors_find(const struct network *network, struct sectors *sectors,
                          struct reason *reason);
 void sectors_free(struct sectors *sectors);
+// Frees all but .surface early: sectors_at must not be called again.
+void sectors_free_sides(struct sectors *sectors);
 
 // The wedges of THROAT in wedges->wedge, until asked again; returns how many.
 int sectors_at(struct sectors *sectors, int throat);

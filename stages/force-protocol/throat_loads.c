@@ -22,20 +22,54 @@ void throat_loads_free(struct throat_loads *loads)
     drying_rings_free(&loads->rings);
 }
 
+// Room for the loads that act on grains.
+static struct load_values load_values_init(const struct throat_loads *loads,
+                                           int n_throat)
+{
+    struct load_values load = {0};
+    for (int l = 0; l < LOADS; l++)
+        if (loads->patches[l].n > 0) load.of[l] = NEW_ARRAY(double, n_throat);
+    return load;
+}
+
+static void load_values_free(struct load_values *load)
+{
+    for (int l = 0; l < LOADS; l++)
+        free(load->of[l]);
+}
+
+// Sets the loads of THROAT to those of the liquid. Returns whether one is another than
+// before. Exact comparison: equal loads give equal sums.
+static bool set_loads(const struct liquid_loads *liquid, int throat,
+                      struct load_values *load)
+{
+    double now[LOADS];
+    liquid_loads_at(liquid, throat, now);
+    bool differs = false;
+    for (int l = 0; l < LOADS; l++) {
+        if (!load->of[l]) continue;
+        differs |= load->of[l][throat] != now[l];
+        load->of[l][throat] = now[l];
+    }
+    return differs;
+}
+
 // FORCE plus the pulls of load L.
 static struct vector pulled(const struct throat_loads *loads, enum load l,
-                            double (*load)[LOADS], int grain, struct vector force)
+                            const struct load_values *load, int grain,
+                            struct vector force)
 {
     const struct patches *patches = &loads->patches[l];
     if (patches->n == 0) return force;
     for (int k = patches->begin[grain]; k < patches->begin[grain + 1]; k++)
-        force = add(force,
-                    scale(load[patches->patch[k].throat][l], patches->patch[k].pull));
+        force = add(force, scale(load->of[l][patches->patch[k].throat],
+                                 patches->patch[k].pull));
     return force;
 }
 
-static struct vector force_on(const struct throat_loads *loads, double (*load)[LOADS],
-                              const double *pull, int grain)
+static struct vector force_on(const struct throat_loads *loads,
+                              const struct load_values *load, const double *pull,
+                              int grain)
 {
     struct vector force = {0};
     for (int l = 0; l < LOAD_WEIGHT; l++)
@@ -49,19 +83,19 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
                 struct vector *force)
 {
     const struct network *network = liquid->network;
-    double(*load)[LOADS] = allocate((size_t)network->n_throat, sizeof *load);
+    struct load_values load = load_values_init(loads, network->n_throat);
     double *pull = NEW_ARRAY(double, loads->rings.n);
     drying_rings_pull(&loads->rings, liquid, pull);
 #pragma omp parallel
     {
 #pragma omp for
         for (int t = 0; t < network->n_throat; t++)
-            liquid_loads_at(liquid, t, load[t]);
+            set_loads(liquid, t, &load);
 #pragma omp for
         for (int i = 0; i < network->packing.n_particle; i++)
-            force[i] = force_on(loads, load, pull, i);
+            force[i] = force_on(loads, &load, pull, i);
     }
-    free(load);
+    load_values_free(&load);
     free(pull);
 }
 
@@ -94,17 +128,10 @@ static void list_grain(struct force_steps *steps, int grain)
     steps->changed[steps->n_changed++] = grain;
 }
 
-// Lists the grains of THROAT if any of its loads is another. Exact comparison: equal
-// loads give equal sums.
+// Lists the grains of THROAT if any of its loads is another.
 static void update_throat(struct force_steps *steps, int throat)
 {
-    double load[LOADS];
-    liquid_loads_at(&steps->liquid, throat, load);
-    bool same = true;
-    for (int l = 0; l < LOADS; l++)
-        same &= load[l] == steps->load[throat][l];
-    if (same) return;
-    memcpy(steps->load[throat], load, sizeof load);
+    if (!set_loads(&steps->liquid, throat, &steps->load)) return;
     for (int k = steps->offset[throat]; k < steps->offset[throat + 1]; k++)
         list_grain(steps, steps->grain[k]);
 }
@@ -137,7 +164,7 @@ static void update(struct force_steps *steps)
     for (int k = 0; k < steps->n_changed; k++) {
         const int grain = steps->changed[k];
         steps->former[k] = steps->force[grain];
-        steps->force[grain] = force_on(steps->loads, steps->load, steps->pull, grain);
+        steps->force[grain] = force_on(steps->loads, &steps->load, steps->pull, grain);
         steps->listed[grain] = false;
     }
 }
@@ -148,24 +175,23 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
                                      const struct suction_law *law)
 {
     const int n = network->packing.n_particle;
-    struct force_steps steps = {
-        .loads = loads,
-        .liquid = liquid_loads_begin(network, record, law),
-        .checks_all =
-            law->rule != SUCTION_UNIFORM || loads->patches[LOAD_CONTACT_LINE].n > 0,
-        .load = allocate((size_t)network->n_throat, sizeof *steps.load),
-        .pull = NEW_ARRAY(double, loads->rings.n),
-        .former_pull = NEW_ARRAY(double, loads->rings.n),
-        .force = NEW_ARRAY(struct vector, n),
-        .changed = NEW_ARRAY(int, n),
-        .former = NEW_ARRAY(struct vector, n),
-        .listed = NEW_ARRAY(bool, n)};
+    struct force_steps steps = {.loads = loads,
+                                .liquid = liquid_loads_begin(network, record, law),
+                                .checks_all = law->rule != SUCTION_UNIFORM ||
+                                              loads->patches[LOAD_CONTACT_LINE].n > 0,
+                                .load = load_values_init(loads, network->n_throat),
+                                .pull = NEW_ARRAY(double, loads->rings.n),
+                                .former_pull = NEW_ARRAY(double, loads->rings.n),
+                                .force = NEW_ARRAY(struct vector, n),
+                                .changed = NEW_ARRAY(int, n),
+                                .former = NEW_ARRAY(struct vector, n),
+                                .listed = NEW_ARRAY(bool, n)};
     list_grains(&steps, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
-        liquid_loads_at(&steps.liquid, t, steps.load[t]);
+        set_loads(&steps.liquid, t, &steps.load);
     drying_rings_pull(&loads->rings, &steps.liquid, steps.pull);
     for (int i = 0; i < n; i++)
-        steps.force[i] = force_on(loads, steps.load, steps.pull, i);
+        steps.force[i] = force_on(loads, &steps.load, steps.pull, i);
     return steps;
 }
 
@@ -186,7 +212,7 @@ bool force_steps_advance(struct force_steps *steps)
 void force_steps_free(struct force_steps *steps)
 {
     liquid_loads_free(&steps->liquid);
-    free(steps->load);
+    load_values_free(&steps->load);
     free(steps->pull);
     free(steps->former_pull);
     free(steps->force);

@@ -20,6 +20,11 @@ struct throat_loads {
 };
 void throat_loads_free(struct throat_loads *loads);
 
+// The loads of all throats now; of those that act on no grain NULL.
+struct load_values {
+    double *of[LOADS]; // (n_throat)
+};
+
 // Forces on all grains (n_particle), for the filling as it is now. OpenMP over the
 // grains, each summed in the order of throats.
 void forces_now(const struct throat_loads *loads, const struct liquid_loads *liquid,
@@ -31,8 +36,8 @@ void forces_now(const struct throat_loads *loads, const struct liquid_loads *liq
 struct force_steps {
     const struct throat_loads *loads;
     struct liquid_loads liquid;
-    bool checks_all;            // throats change that the drying does not list
-    double (*load)[LOADS];      // (n_throat)
+    bool checks_all; // throats change that the drying does not list
+    struct load_values load;
     double *pull, *former_pull; // (loads->rings.n) N, now and before
     struct vector *force;       // (n_particle) N
     int *offset, *grain;        // (n_throat+1): grains that each throat acts on

@@ -3,7 +3,7 @@
 #ifndef CRAQUELURE_TIMES_H
 #define CRAQUELURE_TIMES_H
 
-#include "protocol.h"
+#include "process.h"
 
 // COUNT equidistant times (s), at least 2 [K 5.2]. The caller frees them.
 double *uniform_times(const struct drying_record *record, int count);

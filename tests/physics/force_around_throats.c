@@ -98,8 +98,9 @@ static struct patches balanced_patches_of(const struct network *network, enum fo
     struct reason reason;
     double change;
     assert_int_equal(sectors_find(network, &sectors, &reason), STATUS_OK);
-    assert_int_equal(find_balanced_patches(&sectors, form, &patches, &change, &reason),
-                     STATUS_OK);
+    assert_int_equal(
+        find_balanced_patches(&sectors, form, true, &patches, &change, &reason),
+        STATUS_OK);
     assert_true(form == FORM_FACES ? change < 1e-15 : change > 0.01 && change < 1);
     sectors_free(&sectors);
     return patches;

@@ -28,7 +28,7 @@ static struct patches balanced(struct sectors *sectors, enum form form, double *
 {
     struct patches patches;
     struct reason reason;
-    if (find_balanced_patches(sectors, form, &patches, change, &reason))
+    if (find_balanced_patches(sectors, form, false, &patches, change, &reason))
         fail_msg("%s", reason.text);
     return patches;
 }

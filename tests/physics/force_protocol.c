@@ -7,6 +7,7 @@
 #include "force-protocol/auxiliary.h"
 #include "force-protocol/pendular_rings.h"
 #include "force-protocol/times.h"
+#include "force_rows.h"
 #include "support_lattice.h"
 
 #include <math.h>
@@ -82,33 +83,49 @@ static struct process process_of(const struct pair *pair)
     return (struct process){&pair->network, &pair->record, &pair->law, &pair->loads};
 }
 
+// Of interpolation where only the first and the last time are taken.
+static double error_between_the_ends(const struct pair *pair)
+{
+    const struct process process = process_of(pair);
+    static const double ends[] = {0, 3};
+    struct protocol protocol = protocol_begin(&process, ends, 2);
+    while (protocol_next(&protocol))
+        continue;
+    const double error = protocol.interpolation.worst;
+    protocol_free(&protocol);
+    return error;
+}
+
 static void forces_at_uniform_times(void **state)
 {
     (void)state;
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
-    struct protocol protocol =
-        protocol_init(&process, uniform_times(&pair.record.drying, 7), 7);
+    double *time = uniform_times(&pair.record.drying, 7);
+    double *saturation = saturations_at(&pair.record.drying, time, 7);
+    struct vector *all;
+    struct protocol protocol = whole_protocol(&process, time, 7, &all);
     for (int m = 0; m < 7; m++) {
         const double t = 0.5 * m, first = fmax(0, 1 - t);
         const double second = t < 1 ? 1 : (3 - t) / 2;
-        assert_same(protocol.time[m], t);
-        assert_same(protocol.saturation[m], 0.5 * (first + second));
-        const struct vector *force = protocol.force + 2 * m;
+        assert_same(time[m], t);
+        assert_same(saturation[m], 0.5 * (first + second));
+        const struct vector *force = all + 2 * m;
         const struct vector wanted[2] = {{5 * first, 0, -2.5 * second},
                                          {0, 2.5 * second, 0}};
         for (int i = 0; i < 2; i++)
             assert_same(distance(force[i], wanted[i]), 0);
     }
-    assert_same(largest_force(&protocol, 2), 5 * sqrt(1.25));
-    assert_same(largest_change(&protocol, 2), 2.5);
-    assert_same(interpolation_error(&process, &protocol), 0);
+    assert_same(protocol.measures.force, 5 * sqrt(1.25));
+    assert_same(protocol.measures.change, 2.5);
+    assert_same(protocol.interpolation.worst, 0);
     protocol_free(&protocol);
+    free(saturation);
+    free(time);
+    free(all);
 
     // Only the ends: at time 1 a third of the way has gone, and F_0 = (0, 0, -2.5).
-    protocol = protocol_init(&process, uniform_times(&pair.record.drying, 2), 2);
-    assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
-    protocol_free(&protocol);
+    assert_same(error_between_the_ends(&pair), 5 * sqrt(17) / 6);
     pair_free(&pair);
 }
 
@@ -124,19 +141,18 @@ static void what_jumps_is_missed(void **state)
     patches_add(lines, 1, 1, (struct vector){1, 0, 0});
     patches_sort(lines, 2);
     const struct process process = process_of(&pair);
-    struct protocol protocol =
-        protocol_init(&process, uniform_times(&pair.record.drying, 4), 4);
-    static const double pull[] = {0, 8, 8, 0};
+    static const double time[] = {0, 1, 2, 3}, pull[] = {0, 8, 8, 0};
+    struct vector *all;
+    struct protocol protocol = whole_protocol(&process, time, 4, &all);
     for (int m = 0; m < 4; m++)
-        assert_same(protocol.force[2 * m + 1].x, pull[m]);
-    assert_same(interpolation_error(&process, &protocol), 8);
+        assert_same(all[2 * m + 1].x, pull[m]);
+    assert_same(protocol.interpolation.worst, 8);
     protocol_free(&protocol);
+    free(all);
 
     // Beside jumps what bends without one counts as well: F_0 at time 1, as above.
     pair.law.contact_line = 0.016;
-    protocol = protocol_init(&process, uniform_times(&pair.record.drying, 2), 2);
-    assert_same(interpolation_error(&process, &protocol), 5 * sqrt(17) / 6);
-    protocol_free(&protocol);
+    assert_same(error_between_the_ends(&pair), 5 * sqrt(17) / 6);
     pair_free(&pair);
 }
 
@@ -176,15 +192,16 @@ static void net_force_and_moment(void **state)
     (void)state;
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
-    struct protocol protocol =
-        protocol_init(&process, uniform_times(&pair.record.drying, 4), 4);
-    double force, moment;
-    net_load(&protocol, &pair.network.packing, &force, &moment);
-    assert_same(force, sqrt(37.5) / (5 * sqrt(1.25) + 2.5));
-    assert_same(moment, sqrt(31.25) / (5 * sqrt(1.25) + 5));
+    static const double time[] = {0, 1, 2, 3};
+    struct protocol protocol = protocol_begin(&process, time, 4);
+    while (protocol_next(&protocol))
+        continue;
+    const struct measures *measures = &protocol.measures;
+    assert_same(net_force(measures), sqrt(37.5) / (5 * sqrt(1.25) + 2.5));
+    assert_same(net_moment(measures, &pair.network.packing),
+                sqrt(31.25) / (5 * sqrt(1.25) + 5));
     pair.network.packing.periodic[1] = true;
-    net_load(&protocol, &pair.network.packing, &force, &moment);
-    assert_same(moment, 0);
+    assert_same(net_moment(measures, &pair.network.packing), 0);
     protocol_free(&protocol);
     pair_free(&pair);
 }
@@ -223,7 +240,7 @@ static void a_field_is_linear_between_snapshots(void **state)
 static void auxiliary_grains_go(void **state)
 {
     (void)state;
-    enum { N = 5, TIMES = 3, LEFT = 3 };
+    enum { N = 5, LEFT = 3 };
     static const uint8_t kind[N] = {0, GRAIN_AUXILIARY, 0, GRAIN_AUXILIARY, 0};
     static const int32_t bond[5][2] = {{0, 2}, {0, 1}, {1, 3}, {2, 4}, {3, 4}};
     struct packing packing = {.n_particle = N,
@@ -232,26 +249,24 @@ static void auxiliary_grains_go(void **state)
                               .radius = NEW_ARRAY(double, N),
                               .kind = duplicate(kind, N, sizeof *kind),
                               .bond = duplicate(bond, 5, sizeof *bond)};
-    struct protocol protocol = {.n_time = TIMES,
-                                .force = NEW_ARRAY(struct vector, N * TIMES)};
+    struct vector force[N] = {0}, left[LEFT];
     for (int i = 0; i < N; i++) {
         packing.position[i].x = packing.radius[i] = 1 + i;
-        for (int m = 0; m < TIMES; m++)
-            protocol.force[m * N + i].y = 10 * m + i;
+        force[i].y = 10 + i;
     }
-    drop_auxiliary(&packing, &protocol);
-    assert_int_equal(packing.n_particle, LEFT);
-    assert_null(packing.kind);
-    assert_int_equal(packing.n_bond, 2);
+    struct packing kept = without_auxiliary(&packing);
+    copy_without_auxiliary(&packing, force, sizeof *force, left);
+    assert_int_equal(kept.n_particle, LEFT);
+    assert_null(kept.kind);
+    assert_int_equal(kept.n_bond, 2);
     for (int b = 0; b < 2; b++)
-        assert_true(packing.bond[b][0] == b && packing.bond[b][1] == b + 1);
+        assert_true(kept.bond[b][0] == b && kept.bond[b][1] == b + 1);
     for (int i = 0; i < LEFT; i++) {
-        assert_same(packing.position[i].x, 1 + 2 * i);
-        assert_same(packing.radius[i], 1 + 2 * i);
-        for (int m = 0; m < TIMES; m++)
-            assert_same(protocol.force[LEFT * m + i].y, 10 * m + 2 * i);
+        assert_same(kept.position[i].x, 1 + 2 * i);
+        assert_same(kept.radius[i], 1 + 2 * i);
+        assert_same(left[i].y, 10 + 2 * i);
     }
-    protocol_free(&protocol);
+    packing_free(&kept);
     packing_free(&packing);
 }
 

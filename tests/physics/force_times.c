@@ -4,6 +4,7 @@
 #include "../random.h"
 #include "../test.h"
 #include "force-protocol/times.h"
+#include "force_rows.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -149,6 +150,17 @@ static void as_few_times_as_it_takes(void **state)
 
 // ---- what is said of forces ---------------------------------------------------------
 
+// Of the forces of three times.
+static struct measures measures_of(const struct packing *packing,
+                                   const struct vector *all)
+{
+    struct measures measures = {0};
+    for (int m = 0; m < 3; m++)
+        measure_forces(&measures, packing, all + (ptrdiff_t)m * GRAINS,
+                       m > 0 ? all + (ptrdiff_t)(m - 1) * GRAINS : NULL);
+    return measures;
+}
+
 // One force among nothing, on any grain at any of three times and however small.
 static void one_force_is_found_wherever_it_is(void **state)
 {
@@ -157,21 +169,19 @@ static void one_force_is_found_wherever_it_is(void **state)
     struct vector position[GRAINS] = {{2, 1, 1}, {1, 3, 1}}, all[3 * GRAINS] = {0};
     const struct packing packing = {
         .n_particle = GRAINS, .position = position, .upper = {2, 2, 2}};
-    const struct protocol protocol = {.n_time = 3, .force = all};
-    double force, moment;
     for (int k = 0; k < 3 * GRAINS; k++) {
         all[k] = pull;
-        assert_close(largest_force(&protocol, GRAINS), 5e-30, 1e-15);
-        assert_close(largest_change(&protocol, GRAINS), 5e-30, 1e-15);
-        net_load(&protocol, &packing, &force, &moment);
-        assert_same(force, 1);
-        assert_same(moment, k % GRAINS ? 0.8 : 1); // at a right angle only to x
+        const struct measures found = measures_of(&packing, all);
+        assert_close(found.force, 5e-30, 1e-15);
+        assert_close(found.change, 5e-30, 1e-15);
+        assert_same(net_force(&found), 1);
+        // At a right angle only to x.
+        assert_same(net_moment(&found, &packing), k % GRAINS ? 0.8 : 1);
         all[k] = (struct vector){0};
     }
-    net_load(&protocol, &packing, &force, &moment);
-    assert_true(force == 0 && moment == 0);
-    assert_true(largest_force(&protocol, GRAINS) == 0);
-    assert_true(largest_change(&protocol, GRAINS) == 0);
+    const struct measures none = measures_of(&packing, all);
+    assert_true(net_force(&none) == 0 && net_moment(&none, &packing) == 0);
+    assert_true(none.force == 0 && none.change == 0);
 }
 
 // Half of the forces do not change in a step.
@@ -192,8 +202,8 @@ static struct scene random_scene(uint64_t *seed)
 }
 
 // By how much FORCE at TIME is missed between the times of the protocol around it.
-static double missed(const struct protocol *protocol, double time,
-                     const struct vector *force)
+static double missed(const struct protocol *protocol, const struct vector *all,
+                     double time, const struct vector *force)
 {
     int m = 1;
     while (m + 1 < protocol->n_time && protocol->time[m] <= time)
@@ -202,8 +212,8 @@ static double missed(const struct protocol *protocol, double time,
     const double share = (time - before) / (after - before);
     double most = 0;
     for (int i = 0; i < GRAINS; i++) {
-        const struct vector from = protocol->force[(m - 1) * GRAINS + i];
-        const struct vector to = protocol->force[m * GRAINS + i];
+        const struct vector from = all[(m - 1) * GRAINS + i];
+        const struct vector to = all[m * GRAINS + i];
         const struct vector between = add(scale(1 - share, from), scale(share, to));
         most = fmax(most, distance(force[i], between));
     }
@@ -212,7 +222,7 @@ static double missed(const struct protocol *protocol, double time,
 
 // Of all grains, at the beginning and at the end of all steps.
 static double most_missed(const struct process *process,
-                          const struct protocol *protocol)
+                          const struct protocol *protocol, const struct vector *all)
 {
     const struct drying_record *drying = &process->record->drying;
     struct liquid_loads liquid =
@@ -222,10 +232,10 @@ static double most_missed(const struct process *process,
     for (int step = 0; step + 1 < drying->n_step; step++) {
         if (step > 0) liquid_loads_advance(&liquid);
         forces_now(process->loads, &liquid, force);
-        most = fmax(most, missed(protocol, drying->time[step], force));
+        most = fmax(most, missed(protocol, all, drying->time[step], force));
         liquid_loads_to_end_of_step(&liquid);
         forces_now(process->loads, &liquid, force);
-        most = fmax(most, missed(protocol, drying->time[step + 1], force));
+        most = fmax(most, missed(protocol, all, drying->time[step + 1], force));
     }
     liquid_loads_free(&liquid);
     return most;
@@ -236,11 +246,14 @@ static void check_error(const struct scene *scene)
     const struct process process = process_of(scene);
     const struct drying_record *drying = &scene->record.drying;
     for (int count = 2; count < 20; count++) {
-        struct protocol protocol =
-            protocol_init(&process, uniform_times(drying, count), count);
-        assert_same(interpolation_error(&process, &protocol),
-                    most_missed(&process, &protocol));
+        double *time = uniform_times(drying, count);
+        struct vector *all;
+        struct protocol protocol = whole_protocol(&process, time, count, &all);
+        assert_same(protocol.interpolation.worst,
+                    most_missed(&process, &protocol, all));
         protocol_free(&protocol);
+        free(all);
+        free(time);
     }
 }
 

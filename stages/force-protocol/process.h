@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Everything that determines the forces of one run.
+#ifndef CRAQUELURE_PROCESS_H
+#define CRAQUELURE_PROCESS_H
+
+#include "throat_loads.h"
+
+// It owns nothing.
+struct process {
+    const struct network *network;
+    const struct liquid_record *record;
+    const struct suction_law *law;
+    const struct throat_loads *loads;
+};
+
+#endif
