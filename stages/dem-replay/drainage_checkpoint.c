@@ -68,7 +68,7 @@ void save_drainage(struct array_list *list, const struct drainage *drainage,
     save_history(list, *history, (size_t)load->n_time);
     add_array(list, "load_saturation", ARRAY_FLOAT64, load->n_time, load->saturation);
     add_array(list, "load_dryness", ARRAY_FLOAT64,
-              load->dryness ? (int64_t)load->n_time * n_particle : 0, load->dryness);
+              load->drained ? (int64_t)load->n_time * n_particle : 0, load->drained);
 }
 
 static void take_history(struct drainage_history *history, const double *numbers,
@@ -106,7 +106,7 @@ enum status restore_drainage(const struct array_list *list, struct drainage *dra
                              int n_particle, struct reason *reason)
 {
     const int n = drainage->liquid.n, rows = load->n_time;
-    const int64_t n_dry = load->dryness ? (int64_t)rows * n_particle : 0;
+    const int64_t n_dry = load->drained ? (int64_t)rows * n_particle : 0;
     struct array_reader from = {.list = list, .reason = reason};
     const uint8_t *gas = read_array(&from, "pore_gas", ARRAY_UINT8, n, 0, 1);
     const double *volume =
@@ -126,6 +126,6 @@ enum status restore_drainage(const struct array_list *list, struct drainage *dra
     take_state(drainage, gas, volume, cycle, count);
     take_history(history, numbers, counts, (size_t)rows);
     memcpy(load->saturation, saturation, (size_t)rows * sizeof *saturation);
-    if (n_dry) memcpy(load->dryness, dryness, (size_t)n_dry * sizeof *dryness);
+    if (n_dry) memcpy(load->drained, dryness, (size_t)n_dry * sizeof *dryness);
     return STATUS_OK;
 }

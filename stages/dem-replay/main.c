@@ -4,8 +4,8 @@
 // It reads the forces of a drying and, as a second input, the response of an earlier
 // replay, whose packing then replaces that of the forces. Order matters: bonds first
 // (choose_grains), because the choice of the engine and the strengths depend on them;
-// the weight before the replay, because it is added to every row of the load. After the
-// replay come warnings, then the artifact.
+// the weight before the replay, because it is added to every row of the load, which is
+// read as the replay comes to it. After the replay come warnings, then the artifact.
 //
 // In full: parameters; forces, or a packing that only shrinks; the liquid of bridges;
 // the load; the earlier response; bonds, engine, strengths, held grains; the weight;
@@ -27,6 +27,7 @@
 #include "geometry/support.h"
 #include "parameters.h"
 #include "parameters/estimate.h"
+#include "read_load.h"
 #include "replay_engine.h"
 #include "take_weight.h"
 #include "write_response.h"
@@ -152,40 +153,6 @@ static void check_sizes(const struct packing *packing, const char *path)
     }
 }
 
-static bool is_packing(const struct artifact *input)
-{
-    return !strcmp(input->schema->name, "packing");
-}
-
-// A load without forces, under which a packing only shrinks or drains: n rows a second
-// apart, of saturations from (n-1)/n to 0, so that the first row has shrunk already.
-// The saturations of one that drains are found on the way.
-static struct load load_without_forces(const struct artifact *input,
-                                       const struct replay_parameters *parameters,
-                                       int n_particle)
-{
-    const struct capillarity *drains = &parameters->settings.capillarity;
-    const int n =
-        (int)(drains->suction > 0 ? drains->steps : parameters->shrinkage_steps);
-    if (!(parameters->settings.shrinkage.strain > 0) && !(drains->suction > 0))
-        die(STATUS_BAD_DATA,
-            "%s: is a packing, without forces: first run tessellate, merge-nodes, dry "
-            "and force-protocol, or let it shrink (dem-replay.shrinkage.strain) or "
-            "drain (dem-replay.capillary.suction)",
-            input_name(input->path));
-    struct load load = {.n_time = n,
-                        .drains = drains->suction > 0,
-                        .time = NEW_ARRAY(double, n),
-                        .saturation = NEW_ARRAY(double, n),
-                        .force =
-                            NEW_ARRAY(struct vector, (size_t)n * (size_t)n_particle)};
-    for (int k = 0; k < n; k++) {
-        load.time[k] = k + 1;
-        load.saturation[k] = (double)(n - 1 - k) / n;
-    }
-    return load;
-}
-
 // Menisci follow one packing from its beginning.
 static void check_drains(const struct artifact *input,
                          const struct replay_parameters *parameters,
@@ -201,35 +168,6 @@ static void check_drains(const struct artifact *input,
         die(STATUS_BAD_DATA, "dem-replay.capillary.suction: must be 0 with keep_state "
                              "or the response of "
                              "an earlier replay: what pores hold is not kept");
-}
-
-// The caller frees it with free_load.
-static struct load read_load(const struct artifact *input,
-                             const struct replay_parameters *parameters, int n_particle)
-{
-    const struct shrinkage *how = &parameters->settings.shrinkage;
-    struct load load = {0};
-    if (is_packing(input))
-        load = load_without_forces(input, parameters, n_particle);
-    else {
-        load.time = artifact_get(input, "/time", &load.n_time);
-        load.saturation = artifact_get(input, "/saturation", NULL);
-        load.force = artifact_get(input, "/force", NULL);
-    }
-    load.shrinks = how->strain > 0;
-    if (!load.shrinks || how->law != SHRINKAGE_LIQUID) return load;
-    if (load.drains) {
-        load.dryness = NEW_ARRAY(double, (size_t)load.n_time *(size_t)n_particle);
-        return load;
-    }
-    if (is_packing(input) || !artifact_has_dataset(input, "/liquid_mass"))
-        die(STATUS_BAD_DATA,
-            "%s: /liquid_mass: is not there, which shrinkage.law=liquid needs: run "
-            "force-protocol with a gravity above 0, however small",
-            input_name(input->path));
-    load.dryness = artifact_get(input, "/liquid_mass", NULL);
-    liquid_to_dryness(load.dryness, load.saturation, load.n_time, n_particle);
-    return load;
 }
 
 // Opens the forces, or a packing that is to shrink without any.
@@ -269,14 +207,6 @@ static json_t *digests(const struct artifact *input, const struct artifact *earl
     json_t *inputs = one_input(input);
     if (earlier) json_array_append_new(inputs, input_digest(earlier));
     return inputs;
-}
-
-static void free_load(struct load *load)
-{
-    free(load->time);
-    free(load->saturation);
-    free(load->force);
-    free(load->dryness);
 }
 
 static void show(void *bar, double fraction)
@@ -515,9 +445,8 @@ int main(int argc, char **argv)
     settings->begin = earlier ? &engine : NULL;
     choose_grains(&parameters, &packing, settings, invocation.quiet);
     settings->shrinkage.held = settings->held;
-    settings->shrinkage.dryness = load.dryness;
-    const struct taken_weight weight = take_weight(
-        is_packing(input) ? NULL : input, &parameters, &packing, &load, settings);
+    struct taken_weight weight = take_weight(is_packing(input) ? NULL : input,
+                                             &parameters, &packing, &load, settings);
 
     if (!invocation.quiet) warn_of_defaults(&parameters, &packing);
     json_t *digest = digests(input, earlier);
@@ -526,6 +455,7 @@ int main(int argc, char **argv)
     struct response response;
     run(&packing, &load, settings, &invocation, input->path, &checkpoint.keeper,
         &response);
+    note_bond_numbers(&weight, largest_force(&load));
     if (!invocation.quiet) warn_if_restless(&load, settings, &response);
     if (!invocation.quiet) warn_if_loose(&packing, settings, &response);
     if (!invocation.quiet) warn_of_weight(&weight, &response, &packing);
@@ -539,7 +469,7 @@ int main(int argc, char **argv)
     response_free(&response);
     free(settings->relative_strength);
     free(settings->held);
-    free(weight.standing);
+    taken_weight_free(&weight);
     free_load(&load);
     packing_free(&packing);
     artifact_close(input);

@@ -57,9 +57,12 @@ static enum status continue_replay(struct run *run, struct reason *reason)
     past.first_step = first_step(run);
     past.cycle = run->engine->cycles(run);
     past.crack = own_cracks(run, &past.n_crack);
-    return restore_response(response, run->packing, run->load,
-                            run->settings->n_snapshot, &past, &state->stage,
-                            &run->place, reason);
+    status =
+        restore_response(response, run->packing, run->load, run->settings->n_snapshot,
+                         &past, &state->stage, &run->place, reason);
+    for (int step = 0; step < run->place.step && !status; step++)
+        response->loaded[step] = is_loaded(run->load, run->packing->n_particle, step);
+    return status;
 }
 
 static enum status begin(struct run *run, struct reason *reason)
@@ -138,6 +141,7 @@ static void note_step(struct run *run)
     response->cycles[step] = run->engine->cycles(run) - run->place.began;
     response->unbalanced_ratio[step] = run->engine->unbalanced_ratio(run);
     response->settled[step] = run->engine->is_settled(run);
+    response->loaded[step] = is_loaded(run->load, run->packing->n_particle, step);
     response->reaction[step] = reaction(run);
     note_cracks(run);
 }
@@ -206,6 +210,7 @@ enum status replay(const struct packing *packing, const struct load *load,
         .cycles = NEW_ARRAY(int64_t, load->n_time),
         .cracks = NEW_ARRAY(int32_t, load->n_time),
         .settled = NEW_ARRAY(uint8_t, load->n_time),
+        .loaded = NEW_ARRAY(uint8_t, load->n_time),
         .reaction = NEW_ARRAY(struct net_load, load->n_time),
         .weight_unbalanced_ratio = NAN,
         .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
@@ -250,6 +255,7 @@ void response_free(struct response *response)
     free(response->cycles);
     free(response->cracks);
     free(response->settled);
+    free(response->loaded);
     free(response->reaction);
     free(response->weight_crack);
     drainage_history_free(&response->drainage);

@@ -36,16 +36,23 @@ enum unsettled {
     UNSETTLED_GOES_ON // it is counted
 };
 
-// Forces over time, as forces.h5 holds them: row k is step k of the replay. Row k of
-// .force has that on grain i at k n_particle + i. The caller of replay owns it.
+// Forces over time, as forces.h5 holds them: row k is step k of the replay. A row of
+// values is asked for when the replay comes to it, so that not all need be in memory:
+// rows come in their order from the first on, also where a replay goes on from its
+// state, each of them again as often as needed. What is returned is valid until another
+// row of the same is asked for. The caller of replay owns it.
 struct load {
     int n_time;
     double *time, *saturation; // (n_time) s, rising; of the network, from 1 down
-    struct vector *force;      // (n_time * n_particle) N
-    double *dryness;           // (n_time * n_particle) of each grain; NULL: not known
-    bool shrinks; // grains shrink under it: it acts also where it has no force
-    bool drains;  // gas enters pores, likewise; rows of .saturation and .dryness are
-                  // filled in as the replay comes to them
+    void *source;              // of rows
+    const struct vector *(*force)(void *source, int row); // (n_particle) N
+    // (n_particle) of each grain, also of the row before the last one asked for; NULL:
+    // not known, or .drained.
+    const double *(*dryness)(void *source, int row);
+    double *drained; // (n_time * n_particle) dryness where it drains; else NULL
+    bool shrinks;    // grains shrink under it: it acts also where it has no force
+    bool drains;     // gas enters pores, likewise; rows of .saturation and .drained are
+                     // filled in as the replay comes to them
 };
 
 // How to replay. It owns nothing: arrays must outlive the replay.
@@ -112,6 +119,7 @@ struct response {
     int64_t *cycles;          // (n_time) of time steps; quasi-static: of iterations
     int32_t *cracks;          // (n_time) so far
     uint8_t *settled; // (n_time) 1: all came to rest under it; without a load always
+    uint8_t *loaded;  // (n_time) whether there is one (is_loaded)
     struct net_load *reaction; // (n_time) of supports on the grains, or in place of
                                // them: what was taken off, the other way
     int n_snapshot;

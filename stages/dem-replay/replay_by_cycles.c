@@ -269,7 +269,7 @@ static void shrink_to(struct run *run, double share)
         if (k < 2)
             find_shrinkage(how, run->packing, row - 1 + k,
                            run->load->saturation[row - 1 + k >= 0 ? row - 1 + k : 0],
-                           strain[k]);
+                           dryness_at(run, row - 1 + k), strain[k]);
     }
     dem_shrinkage(dem_of(run), strain[2]);
     for (int i = 0; i < n; i++) {
@@ -399,8 +399,8 @@ static void begin_drainage(struct run *run)
     const int64_t now = dem_cycle(dem_of(run));
     empty_distorted(drainage, dem_of(run));
     run->load->saturation[row] = row > 0 ? run->load->saturation[row - 1] : 1;
-    if (run->load->dryness)
-        find_dryness(&drainage->liquid, run->load->dryness + (size_t)row * n);
+    if (run->load->drained)
+        find_dryness(&drainage->liquid, run->load->drained + (size_t)row * n);
     aim_at_volume(drainage, row);
     if (how->control == CONTROL_SUCTION)
         aim_at_suction(drainage, how->suction * (row + 1) / (double)how->steps, now,

@@ -187,13 +187,15 @@ struct array_list save_loads(const struct array_list *earlier,
     const int64_t before = earlier  ? array_count(earlier, loads_name)
                            : weight ? 3 * (int64_t)packing->n_particle
                                     : 0;
-    const int64_t now = 3 * (int64_t)load->n_time * packing->n_particle;
+    const int64_t each = 3 * (int64_t)packing->n_particle, now = each * load->n_time;
     double *all = NEW_ARRAY(double, before + now);
     const void *data = weight;
     if (earlier && before)
         data = find_array(earlier->array, earlier->count, loads_name)->data;
     if (before) memcpy(all, data, (size_t)before * sizeof *all);
-    memcpy(all + before, load->force, (size_t)now * sizeof *all);
+    for (int k = 0; k < load->n_time; k++)
+        memcpy(all + before + k * each, load->force(load->source, k),
+               (size_t)each * sizeof *all);
     struct array_list list = {NULL, 0};
     add_array(&list, loads_name, ARRAY_FLOAT64, before + now, all);
     free(all);

@@ -42,21 +42,15 @@ static double behind_front(const struct heights *of, double front_width, double 
     return cut_off(((1 + b) * gone - (of->top - z) / of->height) / b);
 }
 
-void liquid_to_dryness(double *liquid, const double *saturation, int n_time, int n)
+void liquid_to_dryness(const double *liquid, const double *most, double saturation,
+                       int n, double *dryness)
 {
-    for (int i = 0; i < n; i++) {
-        double most = 0;
-        for (int k = 0; k < n_time; k++)
-            most = fmax(most, liquid[(size_t)k * (size_t)n + (size_t)i]);
-        for (int k = 0; k < n_time; k++) {
-            double *at = &liquid[(size_t)k * (size_t)n + (size_t)i];
-            *at = most > 0 ? cut_off(1 - *at / most) : 1 - saturation[k];
-        }
-    }
+    for (int i = 0; i < n; i++)
+        dryness[i] = most[i] > 0 ? cut_off(1 - liquid[i] / most[i]) : 1 - saturation;
 }
 
 void find_shrinkage(const struct shrinkage *how, const struct packing *packing, int row,
-                    double saturation, double *strain)
+                    double saturation, const double *dryness, double *strain)
 {
     const struct heights heights = find_heights(packing);
     const size_t n = (size_t)packing->n_particle;
@@ -68,7 +62,7 @@ void find_shrinkage(const struct shrinkage *how, const struct packing *packing, 
         else if (how->law == SHRINKAGE_FRONT)
             w = behind_front(&heights, how->front_width, packing->position[i].z, gone);
         else if (how->law == SHRINKAGE_LIQUID)
-            w = how->dryness[(size_t)row * n + i];
+            w = dryness[i];
         strain[i] = how->strain * w;
     }
 }

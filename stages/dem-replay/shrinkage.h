@@ -15,19 +15,20 @@ enum shrinkage_law {
 // How grains shrink. It owns nothing.
 struct shrinkage {
     enum shrinkage_law law;
-    double strain;         // of a dry grain; 0: nothing shrinks
-    double front_width;    // in mean diameters; NAN: the height of the body
-    const uint8_t *held;   // (n_particle) 1: the substrate, which does not shrink
-    const double *dryness; // (n_time * n_particle) for SHRINKAGE_LIQUID
+    double strain;       // of a dry grain; 0: nothing shrinks
+    double front_width;  // in mean diameters; NAN: the height of the body
+    const uint8_t *held; // (n_particle) 1: the substrate, which does not shrink
 };
 
-// Turns the LIQUID around each grain, kg, (N_TIME * N), into its dryness in [0,1], with
-// the SATURATION (N_TIME) of the network for grains that never had any.
-void liquid_to_dryness(double *liquid, const double *saturation, int n_time, int n);
+// DRYNESS (N) in [0,1] of grains with LIQUID (N) around them, kg, of the MOST (N) that
+// they ever have; with the SATURATION of the network for grains that never have any.
+void liquid_to_dryness(const double *liquid, const double *most, double saturation,
+                       int n, double *dryness);
 
 // Writes the strain of each grain (n_particle) at row ROW of the load, where SATURATION
-// of the network is left. Row -1 is before the load: nothing.
+// of the network is left, and where grains have this DRYNESS (n_particle), which
+// SHRINKAGE_LIQUID goes by. Row -1 is before the load: nothing.
 void find_shrinkage(const struct shrinkage *how, const struct packing *packing, int row,
-                    double saturation, double *strain);
+                    double saturation, const double *dryness, double *strain);
 
 #endif

@@ -3,12 +3,13 @@
 // left open the one that the forces were made with (force-protocol.gravity), and none
 // where nothing supports the body. Bond numbers are computed in any case, with the
 // gravity of the Earth where there is none, so that a user who leaves weight out is
-// told when it matters. They need the load without the weight of the grains:
-// find_bond_numbers comes before add_weight.
+// told when it matters. They need the largest force without the weight of the grains,
+// which is known when the replay has read all rows.
 #include "take_weight.h"
 
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "read_load.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -45,6 +46,16 @@ static double choose_gravity(const struct replay_parameters *parameters,
     return is_free ? 0 : gravity;
 }
 
+// The liquid around each grain (n) before drying, kg; NULL: not known.
+static double *first_liquid(const struct artifact *input, int n)
+{
+    if (!input || !artifact_has_dataset(input, "/liquid_mass")) return NULL;
+    struct row_reader rows = artifact_read_rows(input, "/liquid_mass");
+    double *liquid = duplicate(artifact_row(&rows, 0), (size_t)n, sizeof *liquid);
+    row_reader_free(&rows);
+    return liquid;
+}
+
 // The suction that weights are compared with has the factor force_scale in it, as the
 // forces have.
 struct taken_weight take_weight(const struct artifact *input,
@@ -56,24 +67,33 @@ struct taken_weight take_weight(const struct artifact *input,
     struct taken_weight taken = {.gravity_of_liquid = of_forces,
                                  .gravity =
                                      choose_gravity(parameters, packing, of_forces)};
-    double *liquid = input && artifact_has_dataset(input, "/liquid_mass")
-                         ? artifact_get(input, "/liquid_mass", NULL)
-                         : NULL;
-    struct weighing weighing = {.packing = packing,
-                                .density = settings->material.density,
-                                .gravity = taken.gravity > 0 ? taken.gravity
-                                                             : GRAVITY_OF_THE_EARTH,
-                                .liquid = load->n_time > 0 ? liquid : NULL};
-    const double suction =
-        input ? artifact_get_number(input, "/summary/capillary_pressure") *
-                    artifact_get_number(input, "/summary/force_scale")
-              : 0;
-    taken.numbers = find_bond_numbers(load, suction, &weighing);
-    if (taken.gravity > 0) taken.standing = add_weight(load, &weighing);
+    taken.liquid = load->n_time > 0 ? first_liquid(input, packing->n_particle) : NULL;
+    taken.weighing = (struct weighing){
+        .packing = packing,
+        .density = settings->material.density,
+        .gravity = taken.gravity > 0 ? taken.gravity : GRAVITY_OF_THE_EARTH,
+        .liquid = taken.liquid};
+    if (input)
+        taken.suction = artifact_get_number(input, "/summary/capillary_pressure") *
+                        artifact_get_number(input, "/summary/force_scale");
+    if (taken.gravity > 0) {
+        add_weight(load, grain_weights(&taken.weighing));
+        taken.standing = standing_weight(&taken.weighing);
+    }
     // What an earlier replay has left stands already.
     settings->weight = taken.standing;
-    free(liquid);
     return taken;
+}
+
+void taken_weight_free(struct taken_weight *weight)
+{
+    free(weight->standing);
+    free(weight->liquid);
+}
+
+void note_bond_numbers(struct taken_weight *weight, double largest)
+{
+    weight->numbers = find_bond_numbers(largest, weight->suction, &weight->weighing);
 }
 
 // ---- told ---------------------------------------------------------------------------

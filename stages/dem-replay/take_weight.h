@@ -13,19 +13,28 @@
 struct taken_weight {
     double gravity;              // m/s2; 0: left out
     double gravity_of_liquid;    // in the forces; 0: they have no weight of it
-    struct vector *standing;     // (n_particle) N, as add_weight returns it; NULL: none
-    struct bond_numbers numbers; // with the gravity of the Earth where there is none
+    struct vector *standing;     // (n_particle) N, before drying; NULL: none
+    struct weighing weighing;    // with the gravity of the Earth where there is none
+    double *liquid;              // of it
+    double suction;              // that the forces come from, Pa; 0: from none
+    struct bond_numbers numbers; // of note_bond_numbers
 };
 
-// Takes the weight of the grains into account: adds it to every row of LOAD, which
-// comes from INPUT (NULL: from no forces), and gives SETTINGS the load before drying.
+// Takes the weight of the grains into account: has LOAD, which comes from INPUT (NULL:
+// from no forces), take it up in every row, and gives SETTINGS the load before drying.
 // That of the liquid is in the forces already, if they were made with gravity. Ends the
 // program with status 65 for a gravity with support=free, or in a box that repeats
-// along z. The caller frees .standing, which SETTINGS then point to.
+// along z. SETTINGS then point to .standing. The caller frees it with
+// taken_weight_free; PACKING must live as long.
 struct taken_weight take_weight(const struct artifact *input,
                                 const struct replay_parameters *parameters,
                                 const struct packing *packing, struct load *load,
                                 struct replay_settings *settings);
+void taken_weight_free(struct taken_weight *weight);
+
+// Finds the Bond numbers. LARGEST: the force on a grain at any time, N, known once all
+// rows of the load have been read.
+void note_bond_numbers(struct taken_weight *weight, double largest);
 
 // Warns on standard error if a weight that matters is left out, and of what the weight
 // did alone.

@@ -23,27 +23,28 @@ static double liquid_weight(const struct weighing *of, int i)
     return of->liquid ? of->liquid[i] * of->gravity : 0;
 }
 
-struct vector *add_weight(struct load *load, const struct weighing *of)
+double *grain_weights(const struct weighing *of)
 {
-    const int n = of->packing->n_particle;
-    struct vector *standing = NEW_ARRAY(struct vector, n);
-    for (int i = 0; i < n; i++) {
-        const double weight = grain_weight(of, i);
-        standing[i].z = -weight - liquid_weight(of, i);
-        for (int k = 0; k < load->n_time; k++)
-            load->force[(size_t)k * (size_t)n + (size_t)i].z -= weight;
-    }
+    double *weight = NEW_ARRAY(double, of->packing->n_particle);
+    for (int i = 0; i < of->packing->n_particle; i++)
+        weight[i] = grain_weight(of, i);
+    return weight;
+}
+
+struct vector *standing_weight(const struct weighing *of)
+{
+    struct vector *standing = NEW_ARRAY(struct vector, of->packing->n_particle);
+    for (int i = 0; i < of->packing->n_particle; i++)
+        standing[i].z = -grain_weight(of, i) - liquid_weight(of, i);
     return standing;
 }
 
-struct bond_numbers find_bond_numbers(const struct load *load, double suction,
+struct bond_numbers find_bond_numbers(double largest, double suction,
                                       const struct weighing *of)
 {
     const struct packing *packing = of->packing;
     const int n = packing->n_particle;
-    double largest = 0, grains = 0, liquid = 0;
-    for (size_t k = 0; k < (size_t)load->n_time * (size_t)n; k++)
-        largest = fmax(largest, norm(load->force[k]));
+    double grains = 0, liquid = 0;
     for (int i = 0; i < n; i++) {
         grains += grain_weight(of, i);
         liquid += liquid_weight(of, i);

@@ -15,14 +15,16 @@ struct weighing {
     const double *liquid; // (n_particle) kg around each grain before drying; NULL: none
 };
 
-// Adds the weight of the grains to every row of LOAD, which has that of the liquid
-// already. Returns what stands on the grains before drying begins (n_particle) N: their
-// weight and that of their liquid; the caller frees it.
-struct vector *add_weight(struct load *load, const struct weighing *of);
+// The weight of each grain (n_particle) N. The caller frees it.
+double *grain_weights(const struct weighing *of);
 
-// With the forces of LOAD before any weight of grains was added, and the suction that
-// they come from, Pa; 0: unknown.
-struct bond_numbers find_bond_numbers(const struct load *load, double suction,
+// What stands on the grains before drying begins (n_particle) N: their weight and that
+// of their liquid. The caller frees it.
+struct vector *standing_weight(const struct weighing *of);
+
+// With the LARGEST force (N) on a grain at any time, without any weight of grains; 0:
+// there is none; and the SUCTION that forces come from, Pa; 0: unknown.
+struct bond_numbers find_bond_numbers(double largest, double suction,
                                       const struct weighing *of);
 
 #endif

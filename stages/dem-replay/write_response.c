@@ -275,12 +275,11 @@ static double largest_displacement(const struct packing *packing, const uint8_t 
 }
 
 // Over loads that have a force only: without any, the ratio says nothing (is_loaded).
-static double largest_unbalanced_ratio(const struct load *load, int n,
-                                       const struct response *response)
+static double largest_unbalanced_ratio(const struct response *response, int n_time)
 {
     double most = 0;
-    for (int k = 0; k < load->n_time; k++)
-        if (is_loaded(load, n, k)) most = fmax(most, response->unbalanced_ratio[k]);
+    for (int k = 0; k < n_time; k++)
+        if (response->loaded[k]) most = fmax(most, response->unbalanced_ratio[k]);
     return most;
 }
 
@@ -308,5 +307,5 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_number(artifact, "/summary/gone", response->n_detached);
     artifact_put_number(artifact, "/summary/snaps", response->n_instability);
     artifact_put_number(artifact, "/summary/largest_unbalanced_ratio",
-                        largest_unbalanced_ratio(load, packing->n_particle, response));
+                        largest_unbalanced_ratio(response, load->n_time));
 }

@@ -3,6 +3,7 @@
 // a chain against its closed form.
 #include "dem-replay/bonds.h"
 #include "dem_scene.h"
+#include "load_in_memory.h"
 #include "support_equilibrium.h"
 #include "support_irregular.h"
 
@@ -124,13 +125,15 @@ static int pull_chain(int n, double *relative, enum engine engine, double share,
     struct packing packing = cubic_lattice(n + 1, 1, 1, false);
     uint8_t *held = NEW_ARRAY(uint8_t, n + 1);
     held[0] = 1;
+    struct rows_in_memory rows = {NEW_ARRAY(struct vector, steps * (n + 1)), n + 1};
     struct load load = {.n_time = steps,
                         .time = NEW_ARRAY(double, steps),
                         .saturation = NEW_ARRAY(double, steps),
-                        .force = NEW_ARRAY(struct vector, steps * (n + 1))};
+                        .source = &rows,
+                        .force = row_in_memory};
     const double most = share * relative[weakest(relative, n)] * strength * area();
     for (int k = 0; k < steps; k++)
-        load.force[k * (n + 1) + n].x = most * (k + 1) / steps;
+        rows.force[k * (n + 1) + n].x = most * (k + 1) / steps;
     struct dem_setup stiff = stiff_setup(&packing);
     stiff.material.damping_ratio = 0.05; // bonds are soft beside contacts
     const struct replay_settings settings = {
@@ -152,7 +155,7 @@ static int pull_chain(int n, double *relative, enum engine engine, double share,
     response_free(&response);
     free(load.time);
     free(load.saturation);
-    free(load.force);
+    free(rows.force);
     free(held);
     packing_free(&packing);
     return cracks;

@@ -3,6 +3,7 @@
 // taken off, and it shrinks without moving or turning as one.
 #include "dem_scene.h"
 #include "geometry/net_load.h"
+#include "load_in_memory.h"
 #include "support_equilibrium.h"
 #include "support_irregular.h"
 
@@ -185,8 +186,11 @@ static struct vector *moved(const struct packing *packing, struct vector *force,
                             const struct replay_settings *settings)
 {
     double none[1] = {0};
-    const struct load load = {
-        .n_time = 1, .time = none, .saturation = none, .force = force};
+    const struct load load = {.n_time = 1,
+                              .time = none,
+                              .saturation = none,
+                              .source = &(struct rows_in_memory){force, N},
+                              .force = row_in_memory};
     struct response response = replay_or_fail(packing, &load, settings);
     struct vector *displacement =
         duplicate(response.snapshot[0].displacement, N, sizeof *displacement);

@@ -5,6 +5,7 @@
 #include "dem-replay/bonds.h"
 #include "dem-replay/support_reaction.h"
 #include "dem_scene.h"
+#include "load_in_memory.h"
 #include "support_equilibrium.h"
 #include "support_irregular.h"
 
@@ -61,13 +62,16 @@ static double *in_stress(const double *relative, int n)
 // FORCE, grown to all of it in STEPS equal ones, and let go again in as many.
 static struct load there_and_back(const struct vector *force, int n, int steps)
 {
+    struct rows_in_memory *rows = NEW_ARRAY(struct rows_in_memory, 1);
     struct load load = {.n_time = 2 * steps,
                         .time = NEW_ARRAY(double, 2 * steps),
                         .saturation = NEW_ARRAY(double, 2 * steps),
-                        .force = NEW_ARRAY(struct vector, 2 * steps * n)};
+                        .source = rows,
+                        .force = row_in_memory};
+    *rows = (struct rows_in_memory){NEW_ARRAY(struct vector, 2 * steps * n), n};
     for (int k = 0; k < 2 * steps; k++)
         for (int i = 0; i < n; i++)
-            load.force[k * n + i] =
+            rows->force[k * n + i] =
                 scale(fmin(k + 1, 2 * steps - 1 - k) / steps, force[i]);
     return load;
 }
@@ -76,7 +80,8 @@ static void load_free(struct load *load)
 {
     free(load->time);
     free(load->saturation);
-    free(load->force);
+    free(((struct rows_in_memory *)load->source)->force);
+    free(load->source);
 }
 
 // ---- the whole ----------------------------------------------------------------------
@@ -286,14 +291,14 @@ static double work_of_a_loop(double friction, const double *relative)
     struct vector was[N] = {{0, 0, 0}}, is[N];
     double work = 0, most = 0;
     for (int step = 0; step < load.n_time; step++) {
-        next_equilibrium(equilibrium, load.force + step * N);
+        next_equilibrium(equilibrium, row_in_memory(load.source, step));
         quasi_static_displacements(equilibrium, is);
         for (int i = 0; i < N; i++) {
             if (quasi_static_is_detached(equilibrium)[i]) continue;
-            const struct vector before =
-                step ? load.force[(step - 1) * N + i] : (struct vector){0, 0, 0};
+            const struct vector before = step ? row_in_memory(load.source, step - 1)[i]
+                                              : (struct vector){0, 0, 0};
             const struct vector mean =
-                scale(0.5, add(before, load.force[step * N + i]));
+                scale(0.5, add(before, row_in_memory(load.source, step)[i]));
             work += dot(mean, subtract(is[i], was[i]));
         }
         most = fmax(most, work);

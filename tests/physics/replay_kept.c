@@ -4,6 +4,7 @@
 // cycles and by equilibria, held, on a wall and free, where the load follows the grains
 // at some cycles only. And what overshoots on the way to rest breaks nothing.
 #include "dem_scene.h"
+#include "load_in_memory.h"
 #include "support_equilibrium.h"
 
 #include <math.h>
@@ -53,6 +54,7 @@ struct scene {
     uint8_t held[GRAINS];
     double time[LOADS], saturation[LOADS];
     struct vector weight[GRAINS], force[LOADS * GRAINS];
+    struct rows_in_memory rows;
     struct load load;
     struct replay_settings settings;
 };
@@ -82,7 +84,9 @@ static void make(struct scene *scene, enum engine engine, enum support support)
     scene->load = (struct load){.n_time = LOADS,
                                 .time = scene->time,
                                 .saturation = scene->saturation,
-                                .force = scene->force};
+                                .source = &scene->rows,
+                                .force = row_in_memory};
+    scene->rows = (struct rows_in_memory){scene->force, GRAINS};
     scene->settings = (struct replay_settings){
         .material = setup.material,
         .bond = setup.bond,
@@ -200,8 +204,11 @@ static void nothing_breaks_on_the_way(void **state)
         uint8_t held[] = {1, 0};
         double time[] = {0}, saturation[] = {1};
         struct vector force[] = {{0, 0, 0}, {weight, 0, 0}};
-        const struct load load = {
-            .n_time = 1, .time = time, .saturation = saturation, .force = force};
+        const struct load load = {.n_time = 1,
+                                  .time = time,
+                                  .saturation = saturation,
+                                  .source = &(struct rows_in_memory){force, 2},
+                                  .force = row_in_memory};
         struct replay_settings settings = {.material = setup.material,
                                            .bond = setup.bond,
                                            .held = held,

@@ -4,6 +4,7 @@
 // time T, to 1 + |sin(w T / 2)| / (w T / 2) times that (Chopra, Dynamics of
 // Structures).
 #include "dem_scene.h"
+#include "load_in_memory.h"
 #include "support_equilibrium.h"
 
 static const double pull = 1e-9;
@@ -33,8 +34,11 @@ static bool breaks(double strength, int64_t ramp)
     uint8_t held[] = {1, 0};
     double time[] = {0}, saturation[] = {1};
     struct vector force[] = {{0, 0, 0}, {pull, 0, 0}};
-    const struct load load = {
-        .n_time = 1, .time = time, .saturation = saturation, .force = force};
+    const struct load load = {.n_time = 1,
+                              .time = time,
+                              .saturation = saturation,
+                              .source = &(struct rows_in_memory){force, 2},
+                              .force = row_in_memory};
     struct replay_settings settings = {.material = setup.material,
                                        .bond = setup.bond,
                                        .held = held,
