@@ -93,17 +93,30 @@ struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin
     return kelvin ? within(seconds, 5, 100, mebibytes) : cost_of(seconds, mebibytes);
 }
 
+// What the stages hold of forces over time: a band of rows.
+static double band_bytes(const struct body_size *body)
+{
+    static const double rows = 32;
+    return 24 * body->grains * fmin(body->loads, rows);
+}
+
+// Most memory is taken where the pulls are balanced, before the drying is read, or
+// where the forces are summed.
 struct cost cost_of_forces(const struct body_size *body)
 {
     const double forces = body->grains * body->loads;
+    const double balance = 3.6e-4 * body->throats;
+    const double sum =
+        2.4e-4 * body->throats + (12 * body->changes + band_bytes(body)) / MEBIBYTE;
     return cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
-                   7.5e-4 * body->throats +
-                       (24 * body->changes + 24 * forces) / MEBIBYTE);
+                   fmax(balance, sum));
 }
 
+// A band of long rows is made lower.
 static double replay_mebibytes(const struct body_size *body)
 {
-    return 0.004 * body->grains + 2 * 24 * body->grains * body->loads / MEBIBYTE;
+    static const double most = 256;
+    return 0.0035 * body->grains + fmin(band_bytes(body) / MEBIBYTE, most);
 }
 
 struct cost cost_of_cycles(const struct body_size *body, double ramp, double cycles,
