@@ -100,23 +100,25 @@ static double band_bytes(const struct body_size *body)
     return 24 * body->grains * fmin(body->loads, rows);
 }
 
-// Most memory is taken where the pulls are balanced, before the drying is read, or
-// where the forces are summed.
+// Most memory is taken where the pulls are balanced, where the drying is read, each
+// value twice, or where the forces are summed.
 struct cost cost_of_forces(const struct body_size *body)
 {
+    static const double packing = 3; // MiB: chunks, and what deflate needs
     const double forces = body->grains * body->loads;
     const double balance = 3.6e-4 * body->throats;
+    const double reading = 1.6e-4 * body->throats + 20 * body->changes / MEBIBYTE;
     const double sum =
         2.4e-4 * body->throats + (12 * body->changes + band_bytes(body)) / MEBIBYTE;
     return cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
-                   fmax(balance, sum));
+                   packing + fmax(balance, fmax(reading, sum)));
 }
 
 // A band of long rows is made lower.
 static double replay_mebibytes(const struct body_size *body)
 {
-    static const double most = 256;
-    return 0.0035 * body->grains + fmin(band_bytes(body) / MEBIBYTE, most);
+    static const double packing = 4, most = 256;
+    return packing + 0.0035 * body->grains + fmin(band_bytes(body) / MEBIBYTE, most);
 }
 
 struct cost cost_of_cycles(const struct body_size *body, double ramp, double cycles,
