@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What makes grains come to rest in fewer steps: an adapted time step against closed
-// forms of two grains and of a flight; inertia and weights against free fall.
+// forms of two grains and of a flight; inertia and weights against free fall; inertia
+// by contacts against the closed form of a row.
 #include "dem_scene.h"
 
 static double mass_of(double radius)
@@ -143,11 +144,55 @@ static void free_fall(void **state)
     packing_free(&packing);
 }
 
+// Three grains in a row along x, between neighbours that do not slide: the middle one
+// sways against both by 2 * 2 k/m, an end by 2 k/m, two alone by 2 k/m.
+static void steps_of_a_row(void **state)
+{
+    (void)state;
+    struct packing packing = new_packing(3, 0);
+    for (int i = 0; i < 3; i++)
+        packing.position[i].x = 1.999 * RADIUS * i;
+    packing.upper = (struct vector){20 * RADIUS, 20 * RADIUS, 20 * RADIUS};
+    struct dem_setup setup = stiff_setup(&packing);
+    setup.material.friction = setup.material.damping_ratio = 0;
+    setup.gravity.z = -9.81;
+    const double alone = 2 / sqrt(setup.material.normal_stiffness / mass_of(RADIUS));
+    const struct {
+        double contacts, middle;
+        bool falls;
+    } cases[] = {{1, 2, true}, {2, 1, true}, {1, 2, false}, {4, 1, true}};
+    for (int k = 0; k < 4; k++) {
+        double ratio[3];
+        struct vector velocity[3];
+        const double middle = cases[k].middle;
+        struct dem *dem = create(&setup);
+        dem_set_least_mass(dem, 1, cases[k].falls);
+        dem_even_steps(dem, cases[k].contacts, true);
+        dem_adapt_time_step(dem, 0.8, true, 0);
+        dem_inertia_ratios(dem, ratio);
+        for (int i = 0; i < 3; i++)
+            assert_close(ratio[i], i == 1 ? middle : 1, 1e-9);
+        assert_close(dem_time_step(dem), 0.8 * alone * sqrt(middle / 2), 1e-9);
+        const struct vector still[3] = {{0, 0, 0}};
+        dem_set_velocity(dem, still, still);
+        run(dem, 1);
+        dem_velocities(dem, velocity);
+        for (int i = 0; i < 3; i++) { // together as heavy as they are
+            const double alike = 3 / (2 + middle), own = 1 / ratio[i];
+            assert_close(velocity[i].z / (-9.81 * dem_time_step(dem)),
+                         cases[k].falls ? alike : own, 1e-9);
+        }
+        dem_free(dem);
+    }
+    packing_free(&packing);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(step_of_two_grains), cmocka_unit_test(clock_across_steps),
-        cmocka_unit_test(step_of_a_flight), cmocka_unit_test(free_fall)};
+        cmocka_unit_test(step_of_a_flight), cmocka_unit_test(free_fall),
+        cmocka_unit_test(steps_of_a_row)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -40,6 +40,7 @@ void dem_free(struct dem *dem)
                            dem->mobility,
                            dem->mass,
                            dem->weight,
+                           dem->inertia_factor,
                            dem->material_of,
                            dem->group,
                            dem->group_of,

@@ -296,6 +296,16 @@ void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed);
 // Whether it was set so.
 bool dem_step_is_adapted(const struct dem *dem);
 
+// Gives grains more inertia, from now on: of those that touch NOW, or of all near each
+// other, to each as much as it takes to need no shorter step than two grains alone need
+// that are as light as the lightest, over sqrt(CONTACTS) [relaxation.c]. What an
+// earlier call gave is taken back. Velocities stay. O(pairs).
+void dem_even_steps(struct dem *dem, double contacts, bool now);
+
+// Inertia of every grain over its mass (n_particle): 1 but for the two above and
+// density_scaling.
+void dem_inertia_ratios(const struct dem *dem, double *ratio);
+
 // Stretches the box with all centres along x, y and z about its lower corner, and
 // scales all radii by GROWTH; densities stay. Velocities and shear forces stay as they
 // are. Its work counts as gained, but for contacts with walls, which stay. Returns

@@ -202,7 +202,9 @@ struct dem {
     bool equal_mobility;   // all mobilities are the same
     double *mass;          // (n_particle) inertia
     double *weight;        // (n_particle) mass that gravity pulls
-    uint8_t *material_of;  // (n_particle)
+    // (n_particle) that dem_even_steps multiplies inertia by; NULL: 1
+    double *inertia_factor;
+    uint8_t *material_of; // (n_particle)
     int n_driven;
     struct driven_group *group; // (n_driven)
     uint8_t *group_of;          // (n_particle) 1 + its group, or 0; NULL: no groups
@@ -354,6 +356,8 @@ struct vector advance_wall_rolling(struct wall_pair *pair,
 // the setup, by index in the packing; NULL keeps those that are fixed. With
 // density_scaling every grain gets the mean inertia, but keeps its weight.
 void set_masses(struct dem *dem, const uint8_t *fixed);
+// Of a grain of its radius and density.
+double own_mass(const struct dem *dem, int particle);
 // Sets external forces from what is applied and gravity.
 void set_external(struct dem *dem);
 void set_equal_mobility(struct dem *dem); // sets equal_mobility
@@ -469,6 +473,11 @@ double stability_limit(const struct dem *dem, bool now);
 // The lesser of it and of that of two equal grains that meet, with local damping
 // counted at each spring and dashpot [relaxation.c]; finite.
 double sharp_stability_limit(const struct dem *dem, bool now);
+// Likewise with local damping: the limit of grains like any two that meet, infinite
+// where nothing resists; and that of one grain of the list, at most MOST, a little too
+// low.
+double limit_of_two(const struct dem *dem);
+double sharp_grain_limit(const struct dem *dem, int particle, bool now, double most);
 // AUTOMATIC_SHARE of it, or of that of two equal grains that meet, if that is less.
 double automatic_time_step(const struct dem *dem);
 // Shortens an automatic step that is too long for the pairs that have been found.

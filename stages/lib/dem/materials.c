@@ -127,7 +127,7 @@ struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall 
     return law;
 }
 
-static double grain_weight(const struct dem *dem, int i)
+double own_mass(const struct dem *dem, int i)
 {
     const double radius = dem->place[i].radius;
     return dem->material[dem->material_of[i]].density * (4.0 / 3 * M_PI) * radius *
@@ -149,6 +149,14 @@ void set_equal_mobility(struct dem *dem)
                               dem->mobility[i][1] == dem->mobility[0][1];
 }
 
+// Before weights are those of a fall.
+static double inertia_for(const struct dem *dem, int i, double mean)
+{
+    const double factor = dem->inertia_factor ? dem->inertia_factor[i] : 1;
+    return factor *
+           (dem->density_scaling ? mean : fmax(dem->weight[i], dem->least_mass * mean));
+}
+
 void set_masses(struct dem *dem, const uint8_t *fixed)
 {
     const int n = dem->n_particle;
@@ -156,20 +164,19 @@ void set_masses(struct dem *dem, const uint8_t *fixed)
     dem->largest_radius = 0;
     dem->smallest_radius = INFINITY;
     for (int i = 0; i < n; i++) {
-        dem->weight[i] = grain_weight(dem, i);
+        dem->weight[i] = own_mass(dem, i);
         sum += dem->weight[i];
         dem->largest_radius = fmax(dem->largest_radius, dem->place[i].radius);
         dem->smallest_radius = fmin(dem->smallest_radius, dem->place[i].radius);
     }
     double heavy = 0;
     for (int i = 0; i < n; i++)
-        heavy += fmax(dem->weight[i], dem->least_mass * sum / n);
+        heavy += inertia_for(dem, i, sum / n);
     for (int i = 0; i < n; i++) {
         const bool holds =
             fixed ? fixed[dem->id[i]]
                   : dem->mass[i] > 0 && dem->mobility[i][0] <= 0; // as it was
-        const double own = dem->weight[i], least = dem->least_mass * sum / n;
-        dem->mass[i] = dem->density_scaling ? sum / n : fmax(own, least);
+        dem->mass[i] = inertia_for(dem, i, sum / n);
         if (dem->falls_alike) dem->weight[i] = dem->mass[i] * (sum / heavy);
         if (holds)
             dem->mobility[i][0] = dem->mobility[i][1] = 0;

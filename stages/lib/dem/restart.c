@@ -174,6 +174,9 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
     const bool pushed = find_array(saved->array, saved->count, "applied_force");
     if (pushed && !dem->applied)
         dem->applied = NEW_ARRAY(struct vector, dem->n_particle);
+    const bool evened = find_array(saved->array, saved->count, "inertia_factor");
+    if (evened && !dem->inertia_factor)
+        dem->inertia_factor = NEW_ARRAY(double, dem->n_particle);
     return STATUS_OK;
 }
 

@@ -102,6 +102,7 @@ static void reorder_grains(struct dem *dem, const struct keyed *order)
     REORDER(dem->applied);
     REORDER(dem->mobility);
     REORDER(dem->mass);
+    if (dem->inertia_factor) REORDER(dem->inertia_factor);
     REORDER(dem->weight);
     REORDER(dem->material_of);
     REORDER(dem->group_of);

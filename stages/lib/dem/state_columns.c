@@ -140,6 +140,9 @@ static void add_grains(struct column_list *list, struct dem *dem)
     add_numbers(list, "spin", OF(dem->motion, struct motion, angular), 3, n);
     add_numbers(list, "mass", WHOLE(dem->mass), 1, n)->least = SMALLEST;
     add_numbers(list, "weight", WHOLE(dem->weight), 1, n)->least = SMALLEST;
+    if (dem->inertia_factor)
+        add_numbers(list, "inertia_factor", WHOLE(dem->inertia_factor), 1, n)->least =
+            1;
     add_numbers(list, "mobility", WHOLE(dem->mobility), 2, n)->least = 0;
     add_numbers(list, "displacement_at_search", WHOLE(dem->place_at_search), 3, n);
     if (dem->applied) add_numbers(list, "applied_force", WHOLE(dem->applied), 3, n);
