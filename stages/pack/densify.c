@@ -181,8 +181,10 @@ static enum status run_a_while(struct densification *d, struct reason *reason)
     const double cycles = CYCLES * (adapted ? d->pace / dem_time_step(d->dem) : 1);
     const enum status status = dem_run(d->dem, (int64_t)fmax(1, rint(cycles)), reason);
     d->strains++;
-    if (status == STATUS_OK && adapted && fmod(d->strains, ADAPT_EVERY) == 0)
-        adapt_step(d->dem, !d->jammed, 0);
+    if (status != STATUS_OK || !adapted) return status;
+    if (fmod(d->strains, ADAPT_EVERY) != 0) return status;
+    if (d->jammed) even_steps(d->dem, false);
+    adapt_step(d->dem, !d->jammed, 0);
     return status;
 }
 

@@ -95,23 +95,21 @@ static void close_box(const struct making *making)
     packing->upper = domain->upper;
 }
 
-// The largest speed, of a grain of own inertia with as much kinetic energy: with the
-// mean grain's, a light one that falls is slow.
+// The largest speed, of a grain of own inertia with as much kinetic energy: with more
+// inertia one that falls is slow.
 static double largest_own_speed(const struct making *making, const struct dem *dem)
 {
     const struct packing *packing = making->packing;
     const int n = packing->n_particle;
     struct vector *velocity = NEW_ARRAY(struct vector, n);
+    double *ratio = NEW_ARRAY(double, n);
     dem_velocities(dem, velocity);
-    double mean = 0, largest = 0;
-    const bool scaled = dem_step_is_adapted(dem);
-    for (int i = 0; i < n && scaled; i++)
-        mean += pow(packing->radius[i], 3) / n;
-    for (int i = 0; i < n; i++) {
-        const double heavier = fmax(1, mean / pow(packing->radius[i], 3));
-        largest = fmax(largest, norm(velocity[i]) * sqrt(heavier));
-    }
+    dem_inertia_ratios(dem, ratio);
+    double largest = 0;
+    for (int i = 0; i < n; i++)
+        largest = fmax(largest, norm(velocity[i]) * sqrt(ratio[i]));
     free(velocity);
+    free(ratio);
     return largest;
 }
 
@@ -157,6 +155,7 @@ static void follow(const struct making *making, struct dem *dem, double height,
                        largest_speed(making, dem) < slow;
     const bool falls = settling->landed == 0 && !lands;
     if (!falls && settling->landed == 0) land_grains(dem);
+    even_steps(dem, falls);
     settling->landed = !falls;
     adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
 }

@@ -133,6 +133,11 @@ double step_safety(const struct making *making);
 // some are, faster; while grains FALL, to contacts that may form.
 void adapt_step(struct dem *dem, bool fall, double speed);
 
+// Gives grains with many contacts more inertia, so that they do not shorten the step:
+// by the contacts of now or, while grains FALL, by those that may form. Before
+// adapt_step.
+void even_steps(struct dem *dem, bool fall);
+
 // Gives grains that have fallen their own weight.
 void land_grains(struct dem *dem);
 

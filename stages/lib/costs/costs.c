@@ -61,7 +61,7 @@ double recorded_changes(const struct body_size *body, double interval)
 struct cost cost_of_packing(double grains, enum moving moving)
 {
     static const double constant[] = {[MOVING_BY_GRAVITY] = 1.5e-4,
-                                      [MOVING_BY_COMPRESSION] = 7e-5,
+                                      [MOVING_BY_COMPRESSION] = 5.5e-5,
                                       [MOVING_BY_OVERLAPS] = 1.2e-4,
                                       [MOVING_BY_RELAXATION] = 3.5e-5};
     if (moving == MOVING_NOT) return cost_of(1e-5 * grains, 5e-5 * grains);
