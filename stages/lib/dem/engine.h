@@ -323,6 +323,8 @@ void set_grain_order(struct dem *dem, const int32_t *id);
 // Coefficients of the contact of two grains, or of a grain and a wall [materials.c]. I
 // and J are indices of the engine.
 struct contact_law pair_law(const struct dem *dem, int i, int j);
+// Where grains are alike, of all pairs, whatever inertia dem_even_steps gives each.
+struct contact_law common_law(const struct dem *dem);
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall);
 double plane_strain_compliance(const struct material *m); // (1 - nu^2)/E, Hertz
 // Rolling resistance [rolling.c]; nothing without FEATURE_ROLLING. Of a pair with the

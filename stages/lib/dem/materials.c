@@ -117,6 +117,16 @@ struct contact_law pair_law(const struct dem *dem, int i, int j)
     return contact_law_between(dem, &e);
 }
 
+struct contact_law common_law(const struct dem *dem)
+{
+    const double factor = dem->inertia_factor ? dem->inertia_factor[0] : 1;
+    const double mass = dem->mass[0] / factor, radius = dem->place[0].radius;
+    const struct contact_partners e = {dem->material_of[0], dem->material_of[0],
+                                       mass * mass / (mass + mass),
+                                       radius * radius / (radius + radius)};
+    return contact_law_between(dem, &e);
+}
+
 struct contact_law wall_law(const struct dem *dem, int i, const struct dem_wall *wall)
 {
     const struct contact_partners e = {dem->material_of[i],
@@ -184,7 +194,7 @@ void set_masses(struct dem *dem, const uint8_t *fixed)
             set_mobility(dem, i);
     }
     set_equal_mobility(dem);
-    if (n > 0) dem->law = pair_law(dem, 0, 0);
+    if (n > 0) dem->law = common_law(dem);
 }
 
 void set_external(struct dem *dem)

@@ -251,7 +251,7 @@ static void derive(struct dem *dem)
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] > 0)
             dem->period[axis] = dem->box_upper[axis] - dem->box_lower[axis];
-    if (dem->n_particle > 0) dem->law = pair_law(dem, 0, 0);
+    if (dem->n_particle > 0) dem->law = common_law(dem);
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         struct pair_group *group = &dem->pairs.group[p / PAIRS_IN_GROUP];
         const int lane = p % PAIRS_IN_GROUP;
