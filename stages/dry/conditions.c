@@ -54,6 +54,39 @@ static enum status check_menisci(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
+// Films have the viscosity of the liquid, and none has been found for menisci whose
+// suction changes with height.
+static enum status check_films(const struct drying_conditions *conditions,
+                               struct reason *reason)
+{
+    const struct film_conditions *films = &conditions->films;
+    if (conditions->liquid == LIQUID_IMMOBILE)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "rings: must not be films where liquid is immobile: nothing "
+                      "flows through films either");
+    if (conditions->gravity != 0)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "gravity: must be 0 with rings=films, is %g",
+                      conditions->gravity);
+    if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "viscosity: must be above 0 with rings=films, is %g",
+                      conditions->viscosity);
+    const struct {
+        const char *name;
+        double value, least, most;
+    } range[] = {{"corners", films->corners, 1, 12},
+                 {"half_angle", films->half_angle, 1, 89},
+                 {"conductance", films->conductance, 0, 1e12},
+                 {"step", films->step, 0, 1}};
+    for (size_t i = 0; i < sizeof range / sizeof *range; i++)
+        if (!(range[i].value >= range[i].least && range[i].value <= range[i].most))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "films.%s: must be from %g to %g, is %g", range[i].name,
+                          range[i].least, range[i].most, range[i].value);
+    return STATUS_OK;
+}
+
 // Surface tension and angle count only where suctions are computed: in viscous liquid,
 // under gravity, with the Kelvin effect, or with rings. In the two limits only the
 // order of the radii counts, which has no tension in it.
@@ -75,7 +108,9 @@ static enum status check_liquid(const struct drying_conditions *conditions,
     if (conditions->liquid != LIQUID_VISCOUS && conditions->gravity == 0 &&
         !conditions->kelvin && !conditions->rings)
         return STATUS_OK;
-    const enum status status = check_menisci(conditions, reason);
+    enum status status = check_menisci(conditions, reason);
+    if (!status && conditions->rings == RINGS_FILMS)
+        status = check_films(conditions, reason);
     if (status || conditions->liquid != LIQUID_VISCOUS) return status;
     if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
         return refuse(reason, STATUS_BAD_DATA,

@@ -22,6 +22,15 @@ enum liquid_limit {
 // Molar gas constant, J/(mol K): exact in the SI; [K Table 3.1] rounds it to 8.3145.
 #define GAS_CONSTANT 8.31446261815324
 
+// Films in the corners of throats that have emptied, with rings (liquid/film_law.h).
+struct film_conditions {
+    double corners;     // of a throat, from 1 to 12
+    double half_angle;  // of a corner, degrees, above 0 and below 90
+    double conductance; // factor, 0 or more; 0: no films
+    double step;        // fall of the saturation from one solution of the flow to the
+                        // next, from 0 (each event) to 1
+};
+
 struct drying_conditions {
     double temperature;         // K
     double gas_pressure;        // p_g, Pa
@@ -37,6 +46,7 @@ struct drying_conditions {
     bool knudsen;           // molecules meet the walls of narrow throats
     bool kelvin;            // curved menisci have less vapour
     enum ring_supply rings; // throats leave liquid at contacts
+    struct film_conditions films; // with RINGS_FILMS
     int n_snapshot;
     const double *snapshot; // (n_snapshot) saturations, each below the one before:
                             // where the pressures of viscous liquid are kept

@@ -25,6 +25,9 @@
 enum { MAX_THROATS_BY_EVENTS = 30000 };
 static const double COARSE_STEPS = 1e-3;
 
+// The same for films.step.
+enum { MAX_THROATS_BY_FLOWS = 3000 };
+
 #define AT(member) offsetof(struct dry_parameters, member)
 #define GIVEN AT(given)
 #define WALLS "-x|+x|-y|+y|-z|+z"
@@ -49,13 +52,28 @@ const struct parameter dry_table[] = {
          "a cluster's widest meniscus (inviscid), or as the flow makes it (viscous); "
          "vapour also goes from wide throats to narrow ones, and may condense there"},
     {"rings", PARAMETER_CHOICE, "1", "\"none\"", AT(rings),
-     .choices = "none|isolated|joined",
+     .choices = "none|isolated|joined|films",
      .text =
          "liquid that throats leave around contacts and in gaps when they empty: "
          "none; rings of the suction at which gas enters the throat, which dry when "
-         "their node has no other liquid (inviscid, immobile); or such rings that "
+         "their node has no other liquid (inviscid, immobile); such rings that "
          "films without resistance feed as long as any throat holds liquid "
-         "(inviscid)"},
+         "(inviscid); or films in the corners of throats, with the resistance that "
+         "films.* and viscosity give (inviscid)"},
+    {"films.corners", PARAMETER_NUMBER, "1", "3", AT(conditions.films.corners),
+     BETWEEN(1, 12), .text = "corners of a throat, all alike, that hold a film"},
+    {"films.half_angle", PARAMETER_NUMBER, "degree", "30",
+     AT(conditions.films.half_angle), BETWEEN(1, 89),
+     .text = "half of the angle between the walls of a corner: 30 and three corners "
+             "are a triangle, 45 and four a square; no films where this and "
+             "contact_angle make 90 or more"},
+    {"films.conductance", PARAMETER_NUMBER, "1", "1",
+     AT(conditions.films.conductance), BETWEEN(0, 1e12),
+     .text = "factor of what films conduct; 0: none, as rings=isolated"},
+    {"films.step", PARAMETER_NUMBER, "1", "null", AT(conditions.films.step),
+     BETWEEN(0, 1),
+     .text = "fall of the saturation after which the flow in films is found again; 0: "
+             "at each event; null: 0 up to 3000 throats, 0.001 in larger networks"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
      .text = "viscous: the flow is computed again when the saturation of a throat has "
@@ -158,7 +176,7 @@ static unsigned needed_properties(const struct dry_parameters *parameters)
     const bool flows = parameters->liquid == LIQUID_VISCOUS;
     unsigned needed = 1u << FLUID_SATURATION_PRESSURE | 1u << FLUID_DIFFUSIVITY |
                       1u << FLUID_MOLAR_MASS | 1u << FLUID_DENSITY;
-    if (flows) needed |= 1u << FLUID_VISCOSITY;
+    if (flows || parameters->rings == RINGS_FILMS) needed |= 1u << FLUID_VISCOSITY;
     if (flows || conditions->gravity > 0 || conditions->kelvin ||
         parameters->rings != RINGS_NONE)
         needed |= 1u << FLUID_SURFACE_TENSION;
@@ -220,5 +238,8 @@ enum status complete_conditions(struct dry_parameters *parameters,
     if (isnan(conditions->step_interval))
         conditions->step_interval =
             count_throats(network) > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
+    if (isnan(conditions->films.step))
+        conditions->films.step =
+            count_throats(network) > MAX_THROATS_BY_FLOWS ? COARSE_STEPS : 0;
     return STATUS_OK;
 }

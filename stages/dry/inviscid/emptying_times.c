@@ -13,6 +13,7 @@
 #include "basics/memory.h"
 #include "basics/sorted.h"
 #include "evaporation_shares.h"
+#include "film_supply.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -109,13 +110,20 @@ static void end_timer(struct emptying_times *times, int k)
     times->unused[times->n_unused++] = k;
 }
 
+// Whether the reservoir of timer K loses anything.
+static bool is_needed(const struct emptying_times *times, int k)
+{
+    return times->shares[k] > 0 ||
+           (times->films && times->films->drawn[times->owner[k]] > 0);
+}
+
 // Gives timers whose shares have changed their new rates, from now on.
 static void renew_dirty(struct emptying_times *times)
 {
     for (int l = 0; l < times->n_dirty; l++) {
         const int k = times->dirty[l];
         times->is_dirty[k] = false;
-        if (times->shares[k] == 0) {
+        if (!is_needed(times, k)) {
             end_timer(times, k);
             continue;
         }
@@ -129,20 +137,38 @@ static void renew_dirty(struct emptying_times *times)
     times->n_dirty = 0;
 }
 
+// Finds anew which clusters films draw from, if it is time, and gives these timers.
+static void find_sources(struct emptying_times *times)
+{
+    if (!film_supply_is_due(times)) return;
+    film_supply_find(times);
+    for (int l = 0; l < times->films->n_source; l++) {
+        const int k = timer_of(times, times->films->source[l]);
+        if (times->throat[k] < 0) start_timer(times, k);
+    }
+    for (int k = 0; k < times->n; k++)
+        if (times->owner[k] >= 0 && !is_needed(times, k)) end_timer(times, k);
+}
+
 // New rates after an event. ALL_CHANGED: a node has dried, so that what every other
-// node evaporates has changed.
+// node evaporates has changed; with films each event changes the flow in all.
 static void set_rates(struct emptying_times *times, bool all_changed)
 {
     struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
     for (int k = 0; k < mesh->n_reached_air; k++)
         share_by_node(times, mesh->reached_air[k]);
     mesh->n_reached_air = 0;
-    const bool all = all_changed || evaporation_shares_lack_digits(times);
+    const bool all =
+        all_changed || times->films || evaporation_shares_lack_digits(times);
     if (all) {
         advance_all(times);
         evaporation_shares_add_up(times);
     }
     renew_dirty(times);
+    if (times->films) {
+        find_sources(times);
+        film_supply_set_rates(times);
+    }
     for (int k = 0; all && k < times->n; k++)
         find_end(times, k);
 }
@@ -186,6 +212,7 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
     for (int k = 0; k < occupancy->n_wet; k++)
         share_by_node(&times, occupancy->wet[k]);
     occupancy->vapour.mesh.n_reached_air = 0;
+    if (occupancy->film_law) times.films = film_supply_create(&times);
     set_rates(&times, true);
     return times;
 }
@@ -215,6 +242,7 @@ void emptying_times_free(struct emptying_times *times)
     free(times->dirty);
     free(times->is_dirty);
     free(times->ended);
+    film_supply_free(times->films);
     *times = (struct emptying_times){0};
 }
 
@@ -314,6 +342,18 @@ static void end_films(struct emptying_times *times)
         share_by_node(times, times->occupancy->wet[k]);
 }
 
+// Films draw nothing from what is no cluster any more, and may come to rings that no
+// throat feeds.
+static void change_films(struct emptying_times *times, int throat, int cluster)
+{
+    const struct occupancy *occupancy = times->occupancy;
+    if (occupancy->clusters.size[cluster] == 0) film_supply_end_cluster(times, cluster);
+    for (int end = 0; end < 2; end++) {
+        const int node = occupancy->network->throat_nodes[throat][end];
+        if (occupancy->liquid_beside[node] == 0) film_supply_bare_node(times, node);
+    }
+}
+
 // Returns whether a node dries.
 static bool empty_throat(struct emptying_times *times, int throat)
 {
@@ -324,6 +364,7 @@ static bool empty_throat(struct emptying_times *times, int throat)
     mark_dirty(times, k);
     occupancy_empty_throat(occupancy, throat);
     share_by_ends(times, throat);
+    if (times->films) change_films(times, throat, cluster);
     if (occupancy->feeder && occupancy->clusters.size[cluster] == 0) end_films(times);
     for (int l = 0; l < occupancy->clusters.n_moved; l++)
         share_by_ends(times, occupancy->clusters.moved[l]);

@@ -10,7 +10,8 @@
 // Rings at a node are a reservoir of their own, which loses what the node evaporates
 // once no throat there holds liquid: while one does, its flatter meniscus keeps the
 // vapour from them. They are numbered behind the throats: n_throat + node. Films let
-// their cluster lose it in their place, as long as it has a throat with liquid.
+// their cluster lose it in their place, as long as it has a throat with liquid; those
+// of finite resistance, as far as they reach (film_supply.h).
 #ifndef CRAQUELURE_EMPTYING_TIMES_H
 #define CRAQUELURE_EMPTYING_TIMES_H
 
@@ -19,10 +20,13 @@
 // The part of a node's evaporation that one reservoir (cluster or throat) supplies.
 struct evaporation_share;
 
+struct film_supply;
+
 struct emptying_times {
     struct occupancy *occupancy;
     bool by_throat; // a reservoir for each throat; else for each cluster
     int n_place;    // throats; with rings n_throat + n_node
+    struct film_supply *films; // NULL: none of finite resistance
 
     int n_share;
     struct evaporation_share *share; // (n_share) of nodes that are linked to the air

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rate of each timer, kept up to date as nodes and throats change:
 //     rate[k] = sum over shares of k of part * air_conductance[node],
-//     part = section of the reservoir's throats at the node / section of all there.
+//     part = section of the reservoir's throats at the node / section of all there,
+// before films change it (film_supply.h).
 // Small changes are added to and subtracted from a compensated sum. Subtraction loses
 // digits when little is left of a large sum (MIN_PART); then all rates are summed
 // again, as positive numbers. share_incidence and share_place point at each other, so
@@ -24,8 +25,7 @@ void mark_dirty(struct emptying_times *times, int timer)
     times->dirty[times->n_dirty++] = timer;
 }
 
-// The timer of a reservoir; a new one has no throat yet.
-static int timer_of(struct emptying_times *times, int owner)
+int timer_of(struct emptying_times *times, int owner)
 {
     if (times->timer[owner] >= 0) return times->timer[owner];
     const int k = times->n_unused > 0 ? times->unused[--times->n_unused] : times->n++;

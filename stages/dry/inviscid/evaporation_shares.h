@@ -35,6 +35,9 @@ static inline int reservoir_of(const struct emptying_times *times, int throat)
 void share_by_node(struct emptying_times *times, int node);
 void share_by_ends(struct emptying_times *times, int throat);
 
+// The timer of a reservoir; a new one has no throat yet, and no rate.
+int timer_of(struct emptying_times *times, int owner);
+
 // Notes that the rate of TIMER must be set again.
 void mark_dirty(struct emptying_times *times, int timer);
 

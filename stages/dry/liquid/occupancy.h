@@ -9,18 +9,21 @@
 #include "clusters.h"
 #include "dry/gas/boundary_layer.h"
 #include "dry/gas/vapour.h"
+#include "film_law.h"
 #include "ring_stores.h"
 
 // It owns its arrays and parts, not NETWORK. Volumes are scaled by the cube of the unit
 // of length. Throats of other kinds than THROAT_NETWORK have volume 0 and never liquid.
 struct occupancy {
     const struct network *network;
+    double length; // m, the unit
     struct incidence incidence;
     unsigned far_walls; // opposite an open one, and closed: bits of enum wall
     struct boundary_layer layer;
     struct vapour vapour;
     struct clusters clusters;
 
+    const struct film_law *film_law; // films of finite resistance; NULL: none
     const struct ring_stores *rings; // NULL: throats leave nothing
     double *volume;                  // (n_throat) scaled; 0 where no throat takes part;
                                      // without what stays in rings
@@ -49,6 +52,7 @@ struct occupancy_form {
     double vapour_tolerance;         // likewise
     const struct ring_stores *rings; // kept; NULL: none
     bool films;                      // join what was a cluster at the start
+    const struct film_law *film_law; // kept; NULL: none
 };
 
 // A network full of liquid under its boundary layer: the exposed nodes are liquid and

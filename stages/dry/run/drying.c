@@ -165,6 +165,8 @@ static enum status make_occupancy(const struct network *network, struct run *run
         status = ring_stores_init(network, conditions, run->scale.length, &run->rings,
                                   reason);
     if (status) return status;
+    if (conditions->rings == RINGS_FILMS)
+        run->film_law = film_law_of(conditions, &run->scale);
     double *entry_priority = conditions->gravity != 0
                                  ? find_entry_priority(network, conditions, &run->scale)
                                  : NULL; // by radius
@@ -175,7 +177,8 @@ static enum status make_occupancy(const struct network *network, struct run *run
         .knudsen_radius = knudsen_radius(conditions),
         .vapour_tolerance = conditions->vapour_tolerance,
         .rings = conditions->rings ? &run->rings : NULL,
-        .films = conditions->rings == RINGS_JOINED};
+        .films = conditions->rings == RINGS_JOINED,
+        .film_law = run->film_law.conductance > 0 ? &run->film_law : NULL};
     status = occupancy_init(network, conditions->open_walls, &form, layer,
                             &run->occupancy, reason);
     free(entry_priority);

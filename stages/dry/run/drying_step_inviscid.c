@@ -9,6 +9,7 @@
 // changes rates and clusters; breakthrough; the record (rings as n_throat + node). The
 // rate must be read before gas fills anything, as it is that of the interval that ends
 // here.
+#include "dry/inviscid/film_supply.h"
 #include "run.h"
 
 #include <math.h>
@@ -46,6 +47,14 @@ static void record_step(struct run *run)
     run->imbalance = fmax(run->imbalance, fabs(emptying_times_imbalance(&run->times)));
 }
 
+static enum status refuse_films(const struct run *run, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "rings=films: the flow in films was not found to 1e-10 of the drying "
+                  "rate at saturation %g",
+                  network_saturation(run));
+}
+
 enum status drying_step_inviscid(struct run *run, struct reason *reason)
 {
     struct emptying_times *times = &run->times;
@@ -61,6 +70,7 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
         run->ended[run->n_ended++] = times->ended[k];
     }
     emptying_times_empty_ended(times);
+    if (times->films && times->films->failed) return refuse_films(run, reason);
     note_breakthrough(run);
     record_step(run);
     return STATUS_OK;

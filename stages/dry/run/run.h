@@ -20,6 +20,7 @@ struct run {
     const struct drying_conditions *conditions;
     struct drying_scale scale;
     struct ring_stores rings; // what throats leave at contacts
+    struct film_law film_law; // with rings=films
     struct occupancy occupancy;
     struct emptying_times times;    // inviscid or immobile liquid, no Kelvin effect
     struct liquid_flow flow;        // viscous liquid

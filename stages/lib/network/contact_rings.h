@@ -13,7 +13,8 @@
 enum ring_supply {
     RINGS_NONE,
     RINGS_ISOLATED, // each part keeps what it held when gas cut it off
-    RINGS_JOINED    // films without resistance join all to the rest of the liquid
+    RINGS_JOINED,   // films without resistance join all to the rest of the liquid
+    RINGS_FILMS     // films join them as far as their resistance lets them
 };
 
 struct ring_liquid {

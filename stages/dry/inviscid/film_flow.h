@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Flow in a network of films, where liquid goes only as far as there is some: an
+// obstacle problem. At each site
+//     surplus_i = taken_i + sum_j conductance_ij (level_i - level_j)
+// is what is taken from it and flows away through films. Either this is 0, as films
+// bring what leaves, or the level is the least that it can be, and the site supplies
+// the surplus, above 0, from what it stores:
+//     level >= least,   surplus >= 0,   (level - least) surplus = 0.
+#ifndef CRAQUELURE_FILM_FLOW_H
+#define CRAQUELURE_FILM_FLOW_H
+
+#include "elimination/conductance_matrix.h"
+
+#include <stdbool.h>
+
+// The arrays belong to the caller. Units as in conductance_matrix.h: levels are
+// potentials; what is taken is a flow, 0 or more.
+struct film_flow {
+    const struct conductance_matrix *matrix; // of all n sites
+    const double *taken, *least;             // (n)
+    bool *held;                // (n) the level is the least; first a guess, in which
+                               // each connected part of the network has one such site
+    struct compensated *level; // (n) first a guess where not held
+    double *surplus;           // (n) 0 where not held
+    int rounds, iterations;    // added to
+};
+
+// Finds HELD, LEVEL and SURPLUS. What does not balance at sites that are not held is
+// TOLERANCE in all at most, or what rounding of levels makes. False if that is not
+// reached.
+bool film_flow_solve(struct film_flow *flow, double tolerance);
+
+#endif

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The films between wet nodes, at a moment:
+//     conductance of a throat = film_law.conductance / length,
+//     of its part between clusters c and d at its ends = that times w_c w_d,
+// w the share of a cluster in the liquid's cross-section at the node, and 1 of a node
+// that is a site itself. Parts that no cluster feeds are left out: they are found by
+// uniting what films join.
+#include "film_network.h"
+
+#include "basics/disjoint_sets.h"
+#include "basics/memory.h"
+#include "dry/liquid/losses.h"
+
+#include <stdlib.h>
+
+// While the network is made, a site is its place: a cluster, or n_throat + node.
+struct film_end {
+    int place;
+    double weight;
+};
+
+struct film_links {
+    const struct occupancy *occupancy;
+    int n_place;
+    int n, capacity;
+    struct link *link;
+    int *parent;   // (n_place) what films join
+    bool *is_site; // (n_place)
+};
+
+static bool is_film_node(const struct occupancy *occupancy, int node)
+{
+    return occupancy->wet_place[node] >= 0 && occupancy->liquid_beside[node] == 0;
+}
+
+// END has room for all throats at NODE. Returns how many places there are.
+static int ends_at(const struct occupancy *occupancy, int node, struct film_end *end)
+{
+    if (is_film_node(occupancy, node)) {
+        end[0] = (struct film_end){occupancy->network->n_throat + node, 1};
+        return 1;
+    }
+    int n = 0;
+    double all = 0;
+    for (int k = occupancy->incidence.offset[node];
+         k < occupancy->incidence.offset[node + 1]; k++) {
+        const int throat = occupancy->incidence.throat[k];
+        const double section = liquid_section(occupancy, throat);
+        if (!(section > 0)) continue;
+        const int cluster = occupancy->clusters.of_throat[throat];
+        int l = 0;
+        while (l < n && end[l].place != cluster)
+            l++;
+        if (l == n) end[n++] = (struct film_end){cluster, 0};
+        end[l].weight += section;
+        all += section;
+    }
+    for (int l = 0; l < n; l++)
+        end[l].weight /= all;
+    return n;
+}
+
+static void add_link(struct film_links *links, int a, int b, double conductance)
+{
+    if (a == b) return;
+    GROW_ARRAY(links->link, links->n, links->capacity);
+    links->link[links->n++] = (struct link){{a, b}, conductance};
+    links->is_site[a] = links->is_site[b] = true;
+    unite_sets(links->parent, a, b);
+}
+
+static bool holds_film(const struct occupancy *occupancy, int throat)
+{
+    const struct network *network = occupancy->network;
+    const int32_t *node = network->throat_nodes[throat];
+    return network->throat_kind[throat] == THROAT_NETWORK &&
+           occupancy->clusters.of_throat[throat] < 0 &&
+           occupancy->wet_place[node[0]] >= 0 && occupancy->wet_place[node[1]] >= 0;
+}
+
+static void link_films(struct film_links *links)
+{
+    const struct occupancy *occupancy = links->occupancy;
+    const struct network *network = occupancy->network;
+    int most = 0;
+    for (int i = 0; i < network->n_node; i++) {
+        const int degree =
+            occupancy->incidence.offset[i + 1] - occupancy->incidence.offset[i];
+        most = degree > most ? degree : most;
+    }
+    struct film_end *a = NEW_ARRAY(struct film_end, most + 1);
+    struct film_end *b = NEW_ARRAY(struct film_end, most + 1);
+    for (int t = 0; t < network->n_throat; t++) {
+        if (!holds_film(occupancy, t)) continue;
+        const int n = ends_at(occupancy, network->throat_nodes[t][0], a);
+        const int m = ends_at(occupancy, network->throat_nodes[t][1], b);
+        const double length = network->throat_length[t] / occupancy->length;
+        for (int k = 0; k < n; k++)
+            for (int l = 0; l < m; l++)
+                add_link(links, a[k].place, b[l].place,
+                         occupancy->film_law->conductance / length * a[k].weight *
+                             b[l].weight);
+    }
+    free(a);
+    free(b);
+}
+
+// The lowest place of a set is its root, and clusters come before nodes: so a part of
+// the network has a cluster if its root is one.
+static void number_sites(struct film_links *links, struct film_network *films)
+{
+    const int n_throat = links->occupancy->network->n_throat;
+    int *site = NEW_ARRAY(int, links->n_place), n_link = 0;
+    films->place = NEW_ARRAY(int, links->n_place);
+    for (int p = 0; p < links->n_place; p++) {
+        if (!links->is_site[p] || set_root(links->parent, p) >= n_throat) continue;
+        site[p] = films->n_site;
+        films->place[films->n_site++] = p;
+    }
+    for (int l = 0; l < links->n; l++) {
+        struct link link = links->link[l];
+        if (set_root(links->parent, link.site[0]) >= n_throat) continue;
+        for (int end = 0; end < 2; end++)
+            link.site[end] = site[link.site[end]];
+        links->link[n_link++] = link;
+    }
+    films->matrix =
+        conductance_matrix_of_links(films->n_site, films->n_site, n_link, links->link);
+    free(site);
+}
+
+struct film_network film_network_init(const struct occupancy *occupancy)
+{
+    const struct network *network = occupancy->network;
+    struct film_links links = {.occupancy = occupancy,
+                               .n_place = network->n_throat + network->n_node};
+    struct film_network films = {0};
+    links.parent = NEW_ARRAY(int, links.n_place);
+    links.is_site = NEW_ARRAY(bool, links.n_place);
+    for (int p = 0; p < links.n_place; p++)
+        links.parent[p] = p;
+    link_films(&links);
+    number_sites(&links, &films);
+    free(links.link);
+    free(links.parent);
+    free(links.is_site);
+    return films;
+}
+
+void film_network_free(struct film_network *films)
+{
+    free(films->place);
+    conductance_matrix_free(&films->matrix);
+    *films = (struct film_network){0};
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The films of a moment as a network. Its sites are nodes without liquid in throats,
+// where rings are, and clusters of liquid. Its links are films: in the corners of
+// throats that have emptied, between nodes that are wet.
+//
+// A node beside liquid counts as its cluster. Where several clusters are beside it, the
+// film is divided among them in proportion to the cross-sections of their throats, as
+// what the node evaporates is: so clusters are not joined at a node, only by films.
+#ifndef CRAQUELURE_FILM_NETWORK_H
+#define CRAQUELURE_FILM_NETWORK_H
+
+#include "dry/liquid/occupancy.h"
+#include "elimination/conductance_matrix.h"
+
+// It owns its arrays. Only sites that films join to a cluster are there.
+struct film_network {
+    int n_site;
+    int *place; // (n_site) a cluster, or n_throat + node
+    struct conductance_matrix matrix; // (n_site) conductances, scaled
+};
+
+// Of OCCUPANCY, whose film law says what a throat conducts. O(n_node). The caller frees
+// it with film_network_free.
+struct film_network film_network_init(const struct occupancy *occupancy);
+void film_network_free(struct film_network *films);
+
+#endif

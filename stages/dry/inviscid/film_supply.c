@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The obstacle problem of films (film_flow.h) with, at each site,
+//     rings at a node:  least = 0,   taken = what the node evaporates,
+//     a cluster:        least = (curvature R)^3, R the throat it empties now or next,
+//                       taken = what it evaporates itself.
+// A node whose level is above 0 is reached: it stays wet, and its rings keep their
+// liquid. At 0 the film ends, and the rings supply what it does not bring (the
+// surplus), until they are dry and the node with them. A cluster above its least gets
+// from films all that it evaporates, and its menisci stand still in flatter shape; the
+// others lose the surplus. With F = surplus - taken
+//     own = 1, drawn = F          where F >= 0,
+//     own = surplus / taken, drawn = 0   where F < 0.
+// Both are 0 or more, so no reservoir ever gains. Between two solutions
+//     scale = sum of (1 - own) E / sum of drawn.
+#include "film_supply.h"
+
+#include "basics/memory.h"
+#include "film_flow.h"
+#include "film_network.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Flows are found to this part of the drying rate.
+static const double TOLERANCE = 1e-10;
+// Between two solutions sources lose so much more, or less, at most.
+static const double MOST_STRAY = 0.05;
+
+struct film_supply *film_supply_create(const struct emptying_times *times)
+{
+    const struct network *network = times->occupancy->network;
+    struct film_supply *films = NEW_ARRAY(struct film_supply, 1);
+    *films =
+        (struct film_supply){.own = NEW_ARRAY(double, times->n_place),
+                             .drawn = NEW_ARRAY(double, times->n_place),
+                             .source = NEW_ARRAY(int, network->n_throat),
+                             .reached = NEW_ARRAY(bool, network->n_node),
+                             .floats = NEW_ARRAY(bool, network->n_throat),
+                             .level = NEW_ARRAY(struct compensated, times->n_place),
+                             .evaporates = NEW_ARRAY(double, times->n_place),
+                             .scale = 1,
+                             .is_due = true};
+    for (int p = 0; p < times->n_place; p++)
+        films->own[p] = 1;
+    return films;
+}
+
+void film_supply_free(struct film_supply *films)
+{
+    if (!films) return;
+    free(films->own);
+    free(films->drawn);
+    free(films->source);
+    free(films->reached);
+    free(films->floats);
+    free(films->level);
+    free(films->evaporates);
+    free(films);
+}
+
+static double saturation_now(const struct occupancy *occupancy)
+{
+    return compensated_value(occupancy->total_liquid) / occupancy->capacity;
+}
+
+bool film_supply_is_due(const struct emptying_times *times)
+{
+    const struct film_supply *films = times->films;
+    const double step = times->occupancy->film_law->step;
+    return films->is_due || !(step > 0) ||
+           films->saturation - saturation_now(times->occupancy) >= step;
+}
+
+// --- finding ---------------------------------------------------------------------------
+
+// The cube of the radius of films beside CLUSTER.
+static double least_level(const struct emptying_times *times, int cluster)
+{
+    struct occupancy *occupancy = times->occupancy;
+    const int timer = times->timer[cluster];
+    const int losing = timer >= 0 ? times->throat[timer] : -1;
+    const int throat = losing >= 0
+                           ? losing
+                           : clusters_invasion_throat(&occupancy->clusters, cluster);
+    const double radius = occupancy->film_law->curvature *
+                          occupancy->network->throat_radius[throat] / occupancy->length;
+    return radius * radius * radius;
+}
+
+// A first guess from the last solution. Clusters are held, so that each part of the
+// network has a site that is.
+static void pose(const struct emptying_times *times, const struct film_network *network,
+                 double *taken, double *least, struct film_flow *flow)
+{
+    const struct film_supply *films = times->films;
+    const int n_throat = times->occupancy->network->n_throat;
+    for (int i = 0; i < network->n_site; i++) {
+        const int place = network->place[i];
+        taken[i] = films->evaporates[place];
+        if (place < n_throat) {
+            least[i] = least_level(times, place);
+            flow->held[i] = true;
+        } else {
+            flow->held[i] = !films->reached[place - n_throat];
+            flow->level[i] = films->level[place];
+        }
+    }
+}
+
+static void note_site(struct film_supply *films, int place, int n_throat, double taken,
+                      bool held, double surplus)
+{
+    const double flow = surplus - taken;
+    films->own[place] = flow >= 0 ? 1 : taken > 0 ? surplus / taken : 1;
+    if (place >= n_throat) {
+        films->reached[place - n_throat] = !held;
+    } else if (flow > 0) {
+        films->drawn[place] = flow;
+        films->source[films->n_source++] = place;
+    }
+}
+
+// What each reservoir evaporates, and nothing known of films.
+static void begin(struct emptying_times *times)
+{
+    struct film_supply *films = times->films;
+    for (int p = 0; p < times->n_place; p++) {
+        const int k = times->timer[p];
+        films->evaporates[p] = k >= 0 ? times->rate[k] : 0;
+        films->own[p] = 1;
+        films->drawn[p] = 0;
+    }
+    films->n_source = 0;
+    films->is_due = false;
+    films->saturation = saturation_now(times->occupancy);
+}
+
+static void forget_unreached(struct film_supply *films,
+                             const struct film_network *network, int n_throat,
+                             int n_node)
+{
+    bool *is_site = NEW_ARRAY(bool, n_node);
+    for (int i = 0; i < network->n_site; i++)
+        if (network->place[i] >= n_throat) is_site[network->place[i] - n_throat] = true;
+    for (int i = 0; i < n_node; i++)
+        films->reached[i] = films->reached[i] && is_site[i];
+    free(is_site);
+}
+
+void film_supply_find(struct emptying_times *times)
+{
+    struct film_supply *films = times->films;
+    const int n_throat = times->occupancy->network->n_throat;
+    begin(times);
+    struct film_network network = film_network_init(times->occupancy);
+    forget_unreached(films, &network, n_throat, times->occupancy->network->n_node);
+    const int n = network.n_site;
+    double *taken = NEW_ARRAY(double, n), *least = NEW_ARRAY(double, n);
+    struct film_flow flow = {.matrix = &network.matrix,
+                             .taken = taken,
+                             .least = least,
+                             .held = NEW_ARRAY(bool, n),
+                             .level = NEW_ARRAY(struct compensated, n),
+                             .surplus = NEW_ARRAY(double, n)};
+    pose(times, &network, taken, least, &flow);
+    if (n > 0)
+        films->failed |=
+            !film_flow_solve(&flow, TOLERANCE * vapour_rate(&times->occupancy->vapour));
+    for (int i = 0; i < n; i++) {
+        films->level[network.place[i]] = flow.level[i];
+        note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
+                  flow.surplus[i]);
+    }
+    films->solutions += n > 0;
+    films->iterations += flow.iterations;
+    free(taken);
+    free(least);
+    free(flow.held);
+    free(flow.level);
+    free(flow.surplus);
+    film_network_free(&network);
+}
+
+// --- rates -----------------------------------------------------------------------------
+
+// Sums are of positive numbers, but for the rounding of own.
+static void find_scale(struct emptying_times *times)
+{
+    struct film_supply *films = times->films;
+    double brought = 0, drawn = 0;
+    for (int k = 0; k < times->n; k++)
+        if (times->owner[k] >= 0)
+            brought += (1 - films->own[times->owner[k]]) * times->rate[k];
+    for (int l = 0; l < films->n_source; l++)
+        drawn += films->drawn[films->source[l]];
+    films->scale = drawn > 0 ? brought / drawn : 1;
+    if (!(drawn > 0))
+        for (int p = 0; p < times->n_place; p++)
+            films->own[p] = 1;
+    films->is_due = fabs(films->scale - 1) > MOST_STRAY;
+}
+
+void film_supply_set_rates(struct emptying_times *times)
+{
+    struct film_supply *films = times->films;
+    find_scale(times);
+    for (int k = 0; k < times->n; k++) {
+        const int owner = times->owner[k];
+        if (owner < 0) continue;
+        times->rate[k] =
+            films->own[owner] * times->rate[k] + films->scale * films->drawn[owner];
+    }
+}
+
+// --- between solutions -----------------------------------------------------------------
+
+void film_supply_bare_node(struct emptying_times *times, int node)
+{
+    times->films->own[times->occupancy->network->n_throat + node] = 0;
+}
+
+void film_supply_end_cluster(struct emptying_times *times, int cluster)
+{
+    struct film_supply *films = times->films;
+    films->own[cluster] = 1;
+    if (films->drawn[cluster] > 0) films->is_due = true;
+    films->drawn[cluster] = 0;
+}
+
+double film_evaporation(const struct emptying_times *times)
+{
+    const struct film_supply *films = times->films;
+    const struct occupancy *occupancy = times->occupancy;
+    const int n_throat = occupancy->network->n_throat;
+    double sum = 0;
+    for (int k = 0; k < occupancy->n_wet; k++) {
+        const int node = occupancy->wet[k];
+        if (occupancy->liquid_beside[node] == 0)
+            sum += (1 - films->own[n_throat + node]) *
+                   vapour_evaporation(&occupancy->vapour, node);
+    }
+    return sum;
+}

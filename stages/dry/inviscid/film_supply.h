@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Films of finite resistance: which reservoirs lose what others evaporate.
+//
+// A reservoir (a cluster, or the rings at a node) evaporates the sum E of its shares.
+// It loses
+//     own E + scale drawn:
+// of what it evaporates the part `own`, from 0 to 1, while films bring the rest, and
+// `drawn`, which films take from it to elsewhere. `scale` makes the sum of all losses
+// what goes into the air, exactly; it is 1 when the flow in films has just been found.
+#ifndef CRAQUELURE_FILM_SUPPLY_H
+#define CRAQUELURE_FILM_SUPPLY_H
+
+#include "emptying_times.h"
+
+struct film_supply {
+    double *own, *drawn; // (n_place) by reservoir: cluster, or n_throat + node
+    double scale;
+    int n_source;
+    int *source; // (n_source) clusters from which films draw
+
+    bool *reached;                 // (n_node) films reach it: its rings keep their liquid
+    bool *floats;                  // (n_throat) by cluster: films bring all it evaporates
+    struct compensated *level;     // (n_place) cube of the menisci's radius, scaled
+    double *evaporates;            // (n_place) scaled, when last found; 0: no shares
+    bool is_due;                   // reservoirs have changed so that flows must be found
+    double saturation;             // when last found
+    bool failed;                   // they were not
+    int64_t solutions, iterations; // so far
+    double imbalance;              // largest |scale - 1| when just found
+};
+
+// For TIMES, whose occupancy has a film law. The caller frees it with film_supply_free;
+// NULL is allowed.
+struct film_supply *film_supply_create(const struct emptying_times *times);
+void film_supply_free(struct film_supply *films);
+
+// Whether flows are to be found again at this event.
+bool film_supply_is_due(const struct emptying_times *times);
+
+// Finds the flows, from the sums of shares in TIMES->rate: sets OWN, DRAWN, SOURCE.
+void film_supply_find(struct emptying_times *times);
+
+// Replaces the sums of shares in TIMES->rate by what reservoirs lose.
+void film_supply_set_rates(struct emptying_times *times);
+
+// No throat holds liquid at NODE any more. CLUSTER has none at all.
+void film_supply_bare_node(struct emptying_times *times, int node);
+void film_supply_end_cluster(struct emptying_times *times, int cluster);
+
+// What evaporates from nodes while films bring it, scaled.
+double film_evaporation(const struct emptying_times *times);
+
+#endif
