@@ -140,10 +140,11 @@ static void renew_dirty(struct emptying_times *times)
 // Finds anew which clusters films draw from, if it is time, and gives these timers.
 static void find_sources(struct emptying_times *times)
 {
-    if (!film_supply_is_due(times)) return;
-    film_supply_find(times);
+    if (film_supply_is_due(times)) film_supply_find(times);
     for (int l = 0; l < times->films->n_source; l++) {
-        const int k = timer_of(times, times->films->source[l]);
+        const int source = times->films->source[l];
+        if (!(times->films->drawn[source] > 0)) continue; // it has ended
+        const int k = timer_of(times, source);
         if (times->throat[k] < 0) start_timer(times, k);
     }
     for (int k = 0; k < times->n; k++)

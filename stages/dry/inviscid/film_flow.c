@@ -20,6 +20,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+// Which sites are held is found to so many tolerances first.
+static const double COARSE = 1e5;
+
 enum { MOST_ROUNDS = 1000, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 400 };
 
 // Conjugate gradients on the sites that are not held: all arrays are 0 at the others.
@@ -113,11 +116,14 @@ bool film_flow_solve(struct film_flow *flow, double tolerance)
         if (flow->held[i]) flow->level[i] = (struct compensated){.value = flow->least[i]};
     }
     bool found = false;
+    double coarse = COARSE * tolerance;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         flow->rounds++;
-        if (!balance(flow, given, tolerance, residual, work)) break;
-        found = change_held(flow, tolerance, residual) == 0;
+        if (!balance(flow, given, coarse, residual, work)) break;
+        if (change_held(flow, coarse, residual) > 0) continue;
+        found = !(coarse > tolerance);
         if (found) break;
+        coarse = tolerance;
     }
     for (int i = 0; i < n; i++)
         flow->surplus[i] = flow->held[i] ? fmax(0, -residual[i]) : 0;

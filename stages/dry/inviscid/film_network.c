@@ -112,9 +112,11 @@ static void number_sites(struct film_links *links, struct film_network *films)
     const int n_throat = links->occupancy->network->n_throat;
     int *site = NEW_ARRAY(int, links->n_place), n_link = 0;
     films->place = NEW_ARRAY(int, links->n_place);
+    films->root = NEW_ARRAY(int, links->n_place);
     for (int p = 0; p < links->n_place; p++) {
         if (!links->is_site[p] || set_root(links->parent, p) >= n_throat) continue;
         site[p] = films->n_site;
+        films->root[films->n_site] = site[set_root(links->parent, p)];
         films->place[films->n_site++] = p;
     }
     for (int l = 0; l < links->n; l++) {
@@ -150,6 +152,7 @@ struct film_network film_network_init(const struct occupancy *occupancy)
 void film_network_free(struct film_network *films)
 {
     free(films->place);
+    free(films->root);
     conductance_matrix_free(&films->matrix);
     *films = (struct film_network){0};
 }

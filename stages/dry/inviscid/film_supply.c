@@ -19,12 +19,19 @@
 #include "film_network.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 // Flows are found to this part of the drying rate.
-static const double TOLERANCE = 1e-10;
-// Between two solutions sources lose so much more, or less, at most.
-static const double MOST_STRAY = 0.05;
+static const double TOLERANCE = 1e-9;
+// Between two solutions films draw at most so much more from the sources that are left.
+static const double MOST_STRAY = 2;
+
+// How far above its least a cluster floats.
+struct heir {
+    double gap;
+    int cluster;
+};
 
 struct film_supply *film_supply_create(const struct emptying_times *times)
 {
@@ -34,6 +41,7 @@ struct film_supply *film_supply_create(const struct emptying_times *times)
         (struct film_supply){.own = NEW_ARRAY(double, times->n_place),
                              .drawn = NEW_ARRAY(double, times->n_place),
                              .source = NEW_ARRAY(int, network->n_throat),
+                             .heir = NEW_ARRAY(int, network->n_throat),
                              .reached = NEW_ARRAY(bool, network->n_node),
                              .floats = NEW_ARRAY(bool, network->n_throat),
                              .level = NEW_ARRAY(struct compensated, times->n_place),
@@ -51,6 +59,7 @@ void film_supply_free(struct film_supply *films)
     free(films->own);
     free(films->drawn);
     free(films->source);
+    free(films->heir);
     free(films->reached);
     free(films->floats);
     free(films->level);
@@ -87,8 +96,25 @@ static double least_level(const struct emptying_times *times, int cluster)
     return radius * radius * radius;
 }
 
-// A first guess from the last solution. Clusters are held, so that each part of the
-// network has a site that is.
+// In each part of the network, holds the cluster of the largest least.
+static void hold_highest(const struct film_network *network, int n_throat,
+                         const double *least, bool *held)
+{
+    int *highest = NEW_ARRAY(int, network->n_site); // of a part, by its root
+    for (int i = 0; i < network->n_site; i++)
+        highest[i] = -1;
+    for (int i = 0; i < network->n_site; i++) {
+        int *best = &highest[network->root[i]];
+        if (network->place[i] >= n_throat) continue;
+        if (*best < 0 || least[i] > least[*best]) *best = i;
+    }
+    for (int i = 0; i < network->n_site; i++)
+        if (highest[i] >= 0) held[highest[i]] = true;
+    free(highest);
+}
+
+// A first guess from the last solution. The cluster of the largest least is always
+// held: no level is above it, as liquid goes down from sources that are held.
 static void pose(const struct emptying_times *times, const struct film_network *network,
                  double *taken, double *least, struct film_flow *flow)
 {
@@ -99,12 +125,13 @@ static void pose(const struct emptying_times *times, const struct film_network *
         taken[i] = films->evaporates[place];
         if (place < n_throat) {
             least[i] = least_level(times, place);
-            flow->held[i] = true;
+            flow->held[i] = !films->floats[place];
         } else {
             flow->held[i] = !films->reached[place - n_throat];
-            flow->level[i] = films->level[place];
         }
+        flow->level[i] = films->level[place];
     }
+    hold_highest(network, n_throat, least, flow->held);
 }
 
 static void note_site(struct film_supply *films, int place, int n_throat, double taken,
@@ -112,12 +139,38 @@ static void note_site(struct film_supply *films, int place, int n_throat, double
 {
     const double flow = surplus - taken;
     films->own[place] = flow >= 0 ? 1 : taken > 0 ? surplus / taken : 1;
-    if (place >= n_throat) {
+    if (place >= n_throat)
         films->reached[place - n_throat] = !held;
-    } else if (flow > 0) {
+    else
+        films->floats[place] = !held;
+    if (place < n_throat && flow > 0) {
         films->drawn[place] = flow;
         films->source[films->n_source++] = place;
     }
+}
+
+static int nearer(const void *a, const void *b)
+{
+    const struct heir *x = a, *y = b;
+    if (x->gap != y->gap) return x->gap < y->gap ? -1 : 1;
+    return (x->cluster > y->cluster) - (x->cluster < y->cluster);
+}
+
+// Who supplies, in this order, when sources end before the next solution.
+static void list_heirs(struct film_supply *films, const struct film_network *network,
+                       int n_throat, const struct film_flow *flow)
+{
+    struct heir *heir = NEW_ARRAY(struct heir, network->n_site);
+    films->n_heir = films->next_heir = 0;
+    for (int i = 0; i < network->n_site; i++)
+        if (network->place[i] < n_throat && !flow->held[i])
+            heir[films->n_heir++] = (struct heir){
+                compensated_value(flow->level[i]) - flow->least[i], network->place[i]};
+    if (films->n_heir > 1)
+        qsort(heir, (size_t)films->n_heir, sizeof *heir, nearer);
+    for (int k = 0; k < films->n_heir; k++)
+        films->heir[k] = heir[k].cluster;
+    free(heir);
 }
 
 // What each reservoir evaporates, and nothing known of films.
@@ -171,7 +224,9 @@ void film_supply_find(struct emptying_times *times)
         note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
                   flow.surplus[i]);
     }
+    list_heirs(films, &network, n_throat, &flow);
     films->solutions += n > 0;
+    if (getenv("DBG") && films->solutions % atoi(getenv("DBG")) == 0) fprintf(stderr, "sol %ld sat %.4f n %d sites rounds %d its %d sources %d\n", (long)films->solutions, films->saturation, n, flow.rounds, flow.iterations, films->n_source);
     films->iterations += flow.iterations;
     free(taken);
     free(least);
@@ -194,10 +249,11 @@ static void find_scale(struct emptying_times *times)
     for (int l = 0; l < films->n_source; l++)
         drawn += films->drawn[films->source[l]];
     films->scale = drawn > 0 ? brought / drawn : 1;
-    if (!(drawn > 0))
+    if (!(drawn > 0) && brought > 0)
         for (int p = 0; p < times->n_place; p++)
             films->own[p] = 1;
-    films->is_due = fabs(films->scale - 1) > MOST_STRAY;
+    films->is_due = brought > MOST_STRAY * drawn;
+    if (films->is_due && getenv("DBG")) fprintf(stderr, "  due: scale %g brought %g drawn %g sources %d heirs %d/%d rate %g\n", films->scale, brought, drawn, films->n_source, films->next_heir, films->n_heir, vapour_rate(&times->occupancy->vapour));
 }
 
 void film_supply_set_rates(struct emptying_times *times)
@@ -222,9 +278,18 @@ void film_supply_bare_node(struct emptying_times *times, int node)
 void film_supply_end_cluster(struct emptying_times *times, int cluster)
 {
     struct film_supply *films = times->films;
+    const double drawn = films->drawn[cluster];
     films->own[cluster] = 1;
-    if (films->drawn[cluster] > 0) films->is_due = true;
     films->drawn[cluster] = 0;
+    while (drawn > 0 && films->next_heir < films->n_heir) {
+        const int heir = films->heir[films->next_heir++];
+        if (times->occupancy->clusters.size[heir] == 0 || films->drawn[heir] > 0)
+            continue;
+        films->own[heir] = 1;
+        films->drawn[heir] = drawn;
+        films->source[films->n_source++] = heir;
+        return;
+    }
 }
 
 double film_evaporation(const struct emptying_times *times)

@@ -17,6 +17,8 @@ struct film_supply {
     double scale;
     int n_source;
     int *source; // (n_source) clusters from which films draw
+    int n_heir, next_heir;
+    int *heir; // (n_heir) clusters that float, those nearest to their least first
 
     bool *reached;                 // (n_node) films reach it: its rings keep their liquid
     bool *floats;                  // (n_throat) by cluster: films bring all it evaporates
@@ -43,7 +45,8 @@ void film_supply_find(struct emptying_times *times);
 // Replaces the sums of shares in TIMES->rate by what reservoirs lose.
 void film_supply_set_rates(struct emptying_times *times);
 
-// No throat holds liquid at NODE any more. CLUSTER has none at all.
+// No throat holds liquid at NODE any more. CLUSTER has none at all: another one, which
+// is SOURCE then, supplies what films drew from it.
 void film_supply_bare_node(struct emptying_times *times, int node);
 void film_supply_end_cluster(struct emptying_times *times, int cluster);
 
