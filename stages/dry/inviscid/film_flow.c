@@ -8,85 +8,135 @@
 // never loses its last held site: what they supply is what is taken there, 0 or more,
 // so not all surpluses are below 0.
 //
-// The balances are solved by conjugate gradients from the levels of before, which the
-// events between have hardly changed, preconditioned by a symmetric Gauss-Seidel sweep,
-// and corrected until the true residual, from differences of compensated levels, is
-// small enough.
+// The balances of the sites that are not held are one linear system a round, which
+// sparse/linear_solver.h solves from the levels of before, until the true residual,
+// from differences of compensated levels, is small enough.
 #include "film_flow.h"
 
 #include "basics/memory.h"
-#include "sparse/conjugate_gradients.h"
+#include "sparse/linear_solver.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 // Which sites are held is found to so many tolerances first.
 static const double COARSE = 1e5;
 
-enum { MOST_ROUNDS = 1000, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 400 };
+// Each correction reduces the residual so far.
+static const double REDUCTION = 1e-4;
 
-// Conjugate gradients on the sites that are not held: all arrays are 0 at the others.
-static void multiply_free(void *context, const double *x, double *ap)
+enum { MOST_ROUNDS = 1000, MOST_CORRECTIONS = 30 };
+
+// The sites in another order: first those that are not held, N of them.
+struct free_sites {
+    int n;
+    int *site, *order; // (all) the site at each place, and the place of each site
+    struct conductance_matrix matrix; // (n)
+    struct compensated *level;        // (all)
+    double *given, *residual;         // (n)
+};
+
+static void number_free(const struct film_flow *flow, struct free_sites *sites)
 {
-    const struct film_flow *flow = context;
-    conductance_matrix_multiply(flow->matrix, x, ap);
-    for (int i = 0; i < flow->matrix->n; i++)
-        if (flow->held[i]) ap[i] = 0;
+    const int n_all = flow->matrix->n;
+    sites->n = 0;
+    for (int hold = 0; hold < 2; hold++)
+        for (int i = 0, n = sites->n; i < n_all; i++) {
+            if (flow->held[i] != hold) continue;
+            sites->order[i] = n;
+            sites->site[n++] = i;
+            if (!hold) sites->n = n;
+        }
 }
 
-// Z = (D + U)^-1 D (D + L)^-1 RESIDUAL.
-static void sweep(void *context, const double *residual, double *z)
+// The rows of the sites that are not held, under their numbers.
+static struct free_sites free_sites_init(const struct film_flow *flow)
 {
-    const struct film_flow *flow = context;
-    const struct conductance_matrix *matrix = flow->matrix;
-    for (int i = 0; i < matrix->n; i++) {
-        double sum = residual[i];
-        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
-            if (matrix->column[k] < i) sum += matrix->value[k] * z[matrix->column[k]];
-        z[i] = flow->held[i] ? 0 : sum / matrix->diagonal[i];
+    const struct conductance_matrix *all = flow->matrix;
+    const size_t n_all = (size_t)all->n;
+    struct free_sites sites = {.site = NEW_ARRAY(int, n_all),
+                               .order = NEW_ARRAY(int, n_all),
+                               .level = NEW_ARRAY(struct compensated, n_all),
+                               .given = NEW_ARRAY(double, n_all),
+                               .residual = NEW_ARRAY(double, n_all)};
+    number_free(flow, &sites);
+    struct conductance_matrix *matrix = &sites.matrix;
+    *matrix = (struct conductance_matrix){.n = sites.n,
+                                          .n_all = all->n,
+                                          .offset = NEW_ARRAY(int, n_all + 2),
+                                          .column = NEW_ARRAY(int, all->offset[all->n]),
+                                          .value = NEW_ARRAY(double, all->offset[all->n]),
+                                          .diagonal = NEW_ARRAY(double, n_all)};
+    for (int row = 0; row < all->n; row++) {
+        const int i = sites.site[row];
+        sites.level[row] = flow->level[i];
+        if (row >= sites.n) continue;
+        int to = matrix->offset[row];
+        for (int k = all->offset[i]; k < all->offset[i + 1]; k++, to++) {
+            matrix->column[to] = sites.order[all->column[k]];
+            matrix->value[to] = all->value[k];
+        }
+        matrix->offset[row + 1] = to;
+        matrix->diagonal[row] = all->diagonal[i];
+        sites.given[row] = -flow->taken[i];
     }
-    for (int i = matrix->n - 1; i >= 0; i--) {
-        double sum = 0;
-        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
-            if (matrix->column[k] > i) sum += matrix->value[k] * z[matrix->column[k]];
-        if (!flow->held[i]) z[i] += sum / matrix->diagonal[i];
-    }
+    return sites;
 }
 
-// The balances as they are: SURPLUS with its sign turned, at all sites. Returns the sum
-// of its sizes where no site is held, less what rounding of levels makes.
-static double find_residual(const struct film_flow *flow, const double *given,
-                            double *residual)
+static void free_sites_free(struct free_sites *sites)
 {
-    const int n = flow->matrix->n;
+    free(sites->site);
+    free(sites->order);
+    free(sites->level);
+    free(sites->given);
+    free(sites->residual);
+    conductance_matrix_free(&sites->matrix);
+}
+
+// The sum of what does not balance, less what rounding of levels makes.
+static double imbalance(const struct free_sites *sites)
+{
     double sum = 0, rounding = 0;
-    conductance_matrix_residual(flow->matrix, given, flow->level, residual);
-    for (int i = 0; i < n; i++) {
-        if (flow->held[i]) continue;
-        sum += fabs(residual[i]);
-        rounding += flow->matrix->diagonal[i] * compensated_value(flow->level[i]);
+    for (int i = 0; i < sites->n; i++) {
+        sum += fabs(sites->residual[i]);
+        rounding += sites->matrix.diagonal[i] * compensated_value(sites->level[i]);
     }
     return sum - 1e-15 * rounding;
 }
 
-// The levels where no site is held. RESIDUAL is left as find_residual finds it.
-static bool balance(struct film_flow *flow, const double *given, double tolerance,
-                    double *residual, double *work[5])
+static bool correct(struct film_flow *flow, struct free_sites *sites, double tolerance)
 {
-    const int n = flow->matrix->n;
-    const struct linear_problem problem = {
-        n, flow, multiply_free, sweep, {work[0], work[1], work[2]}};
-    for (int k = 0; k < MOST_CORRECTIONS; k++) {
-        if (!(find_residual(flow, given, residual) > tolerance)) return true;
-        double *right = work[3], *x = work[4];
-        for (int i = 0; i < n; i++)
-            right[i] = flow->held[i] ? 0 : residual[i];
-        flow->iterations += conjugate_gradients(
-            &problem, right, x, tolerance / (2 * sqrt(n)), MOST_ITERATIONS);
-        for (int i = 0; i < n; i++)
-            if (!flow->held[i]) compensated_add(&flow->level[i], x[i]);
+    struct linear_solver linear = {0};
+    struct reason reason;
+    conductance_matrix_residual(&sites->matrix, sites->given, sites->level,
+                                sites->residual);
+    if (!(imbalance(sites) > tolerance)) return true;
+    bool found =
+        linear_solver_init(&sites->matrix, SOLVER_AUTO, &linear, &reason) == STATUS_OK;
+    int most = found ? MOST_CORRECTIONS : 0;
+    for (found = false; most > 0 && !found; most--) {
+        if (linear_correct(&linear, sites->given, sites->level, sites->residual,
+                           REDUCTION, &flow->iterations, &reason))
+            break;
+        found = !(imbalance(sites) > tolerance);
     }
-    return false;
+    linear_solver_free(&linear);
+    return found;
+}
+
+// The levels where no site is held, and the balances of all sites: SURPLUS with its
+// sign turned.
+static bool balance(struct film_flow *flow, const double *given, double tolerance,
+                    double *residual)
+{
+    struct free_sites sites = free_sites_init(flow);
+    const bool found = sites.n == 0 || correct(flow, &sites, tolerance);
+    for (int k = 0; k < sites.n; k++)
+        flow->level[sites.site[k]] = sites.level[k];
+    free_sites_free(&sites);
+    conductance_matrix_residual(flow->matrix, given, flow->level, residual);
+    return found;
 }
 
 // Holds and frees sites; returns how many.
@@ -107,10 +157,7 @@ static int change_held(struct film_flow *flow, double tolerance, const double *r
 bool film_flow_solve(struct film_flow *flow, double tolerance)
 {
     const int n = flow->matrix->n;
-    double *room = NEW_ARRAY(double, 7 * (size_t)n), *work[5];
-    double *residual = room + 5 * n, *given = room + 6 * n;
-    for (int k = 0; k < 5; k++)
-        work[k] = room + k * n;
+    double *residual = NEW_ARRAY(double, n), *given = NEW_ARRAY(double, n);
     for (int i = 0; i < n; i++) {
         given[i] = -flow->taken[i];
         if (flow->held[i]) flow->level[i] = (struct compensated){.value = flow->least[i]};
@@ -119,7 +166,7 @@ bool film_flow_solve(struct film_flow *flow, double tolerance)
     double coarse = COARSE * tolerance;
     for (int round = 0; round < MOST_ROUNDS; round++) {
         flow->rounds++;
-        if (!balance(flow, given, coarse, residual, work)) break;
+        if (!balance(flow, given, coarse, residual)) break;
         if (change_held(flow, coarse, residual) > 0) continue;
         found = !(coarse > tolerance);
         if (found) break;
@@ -127,6 +174,7 @@ bool film_flow_solve(struct film_flow *flow, double tolerance)
     }
     for (int i = 0; i < n; i++)
         flow->surplus[i] = flow->held[i] ? fmax(0, -residual[i]) : 0;
-    free(room);
+    free(residual);
+    free(given);
     return found;
 }
