@@ -9,7 +9,9 @@
 #include "describe.h"
 
 #include "conditions.h"
+#include "dry/liquid/corner_film.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -45,8 +47,33 @@ static void append(char *text, size_t size, const char *more)
     snprintf(text + length, size - length, "%s", more);
 }
 
-// "left out" ends with what no switch turns on: films along corners, and the
-// temperature field.
+static void describe_films(const struct drying_conditions *conditions, char *text,
+                           size_t size)
+{
+    const struct film_conditions *films = &conditions->films;
+    const double degree = M_PI / 180, half = films->half_angle * degree;
+    const double angle = conditions->contact_angle * degree;
+    char line[320];
+    append(text, size,
+           "rings stay at contacts as throats empty, exact bridges, and dry where films "
+           "do not reach\n");
+    if (corner_holds_film(half, angle))
+        snprintf(line, sizeof line,
+                 "films in %.6g corners of half angle %.6g degrees of each throat that "
+                 "has emptied: area %.6g r^2, resistance beta %.6g, conductance times "
+                 "%.6g, liquid of %.6g m2/s; flow found every %.6g of saturation\n",
+                 films->corners, films->half_angle, corner_area(half, angle),
+                 corner_resistance(half, angle), films->conductance,
+                 conditions->viscosity, films->step);
+    else
+        snprintf(line, sizeof line,
+                 "films: none, as half angle %.6g and contact angle make 90 degrees or "
+                 "more\n",
+                 films->half_angle);
+    append(text, size, line);
+}
+
+// "left out" ends with what no switch turns on: the temperature field.
 const char *describe_switches(const struct drying_conditions *conditions, char *text,
                               size_t size)
 {
@@ -95,11 +122,12 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
                "rings stay at contacts as throats empty, exact bridges; films without "
                "resistance join all liquid and feed them until the last throat has "
                "emptied\n");
+    if (conditions->rings == RINGS_FILMS) describe_films(conditions, text, size);
     append(text, size, "left out: ");
     if (!gravity) append(text, size, "gravity, ");
     if (!conditions->knudsen) append(text, size, "Knudsen effect, ");
     if (!conditions->kelvin) append(text, size, "Kelvin effect, ");
-    if (conditions->rings != RINGS_JOINED) append(text, size, "films, ");
+    if (conditions->rings < RINGS_JOINED) append(text, size, "films, ");
     append(text, size, "temperature");
     return text;
 }

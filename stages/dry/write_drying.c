@@ -183,8 +183,8 @@ void write_drying(const struct network *network, const struct drying_history *hi
 {
     const struct drying_conditions *conditions = &parameters->conditions;
     const enum transfer_law law = (enum transfer_law)parameters->transfer_law;
-    char model[3300], radii[RADII_TEXT], layer[300], flow[200], liquid[300], fluid[900],
-        switches[500];
+    char model[3800], radii[RADII_TEXT], layer[300], flow[200], liquid[300], fluid[900],
+        switches[1000];
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
              "boundary layer: %s\n"

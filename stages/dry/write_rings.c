@@ -3,14 +3,17 @@
 //     /rings        (n_ring) face, separation; (n_ring + 1) offset of
 //                   (n_part) throat, volume: what each throat leaves
 //     /ring_changes (n_step + 1) offset of (n_ring_change) node, saturation
-//     /history/ring_saturation (n_step)
+//     /history/ring_saturation (n_step); with films film_evaporation, film_depth and
+//                   film_deepest (run/film_history.h)
 //     /summary      ring_saturation: what all throats leave; residual_saturation: what
 //                   is there when the last throat has emptied; limited_throats
 #include "write_rings.h"
 
+#include "dry/run/film_history.h"
 #include "dry/run/ring_history.h"
 
 #include <limits.h>
+#include <math.h>
 
 // The step from which on all liquid is in rings; -1: never.
 static int first_of_rings_alone(const struct drying_history *history)
@@ -29,6 +32,20 @@ static double left_by_all(const struct ring_history *rings)
     return sum;
 }
 
+static void put_films(struct artifact *artifact, const struct film_history *films,
+                      int n_step)
+{
+    double deepest = 0;
+    for (int k = 0; k < n_step; k++)
+        deepest = fmax(deepest, films->deepest[k]);
+    artifact_put(artifact, "/history/film_evaporation", films->evaporation, n_step);
+    artifact_put(artifact, "/history/film_depth", films->depth, n_step);
+    artifact_put(artifact, "/history/film_deepest", films->deepest, n_step);
+    artifact_put_number(artifact, "/summary/film_evaporated", films->evaporated);
+    artifact_put_number(artifact, "/summary/film_deepest", deepest);
+    artifact_put_number(artifact, "/summary/film_solutions", (double)films->solutions);
+}
+
 void put_rings(struct artifact *artifact, const struct drying_history *history)
 {
     const struct ring_history *rings = history->rings;
@@ -45,6 +62,7 @@ void put_rings(struct artifact *artifact, const struct drying_history *history)
     artifact_put(artifact, "/ring_changes/saturation", rings->change_saturation,
                  n_change);
     artifact_put(artifact, "/history/ring_saturation", rings->saturation, n_step);
+    if (history->films) put_films(artifact, history->films, n_step);
     const int step = first_of_rings_alone(history);
     artifact_put_number(artifact, "/summary/ring_volume", left_by_all(rings));
     artifact_put_number(artifact, "/summary/limited_throats", rings->limited);

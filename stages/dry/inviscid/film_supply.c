@@ -19,7 +19,6 @@
 #include "film_network.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 // Flows are found to this part of the drying rate.
@@ -226,8 +225,6 @@ void film_supply_find(struct emptying_times *times)
     }
     list_heirs(films, &network, n_throat, &flow);
     films->solutions += n > 0;
-    if (getenv("DBG") && films->solutions % atoi(getenv("DBG")) == 0) fprintf(stderr, "sol %ld sat %.4f n %d sites rounds %d its %d sources %d\n", (long)films->solutions, films->saturation, n, flow.rounds, flow.iterations, films->n_source);
-    films->iterations += flow.iterations;
     free(taken);
     free(least);
     free(flow.held);
@@ -242,10 +239,16 @@ void film_supply_find(struct emptying_times *times)
 static void find_scale(struct emptying_times *times)
 {
     struct film_supply *films = times->films;
+    const int n_throat = times->occupancy->network->n_throat;
     double brought = 0, drawn = 0;
-    for (int k = 0; k < times->n; k++)
-        if (times->owner[k] >= 0)
-            brought += (1 - films->own[times->owner[k]]) * times->rate[k];
+    films->evaporation = 0;
+    for (int k = 0; k < times->n; k++) {
+        const int owner = times->owner[k];
+        if (owner < 0) continue;
+        const double part = (1 - films->own[owner]) * times->rate[k];
+        brought += part;
+        if (owner >= n_throat) films->evaporation += part;
+    }
     for (int l = 0; l < films->n_source; l++)
         drawn += films->drawn[films->source[l]];
     films->scale = drawn > 0 ? brought / drawn : 1;
@@ -253,7 +256,6 @@ static void find_scale(struct emptying_times *times)
         for (int p = 0; p < times->n_place; p++)
             films->own[p] = 1;
     films->is_due = brought > MOST_STRAY * drawn;
-    if (films->is_due && getenv("DBG")) fprintf(stderr, "  due: scale %g brought %g drawn %g sources %d heirs %d/%d rate %g\n", films->scale, brought, drawn, films->n_source, films->next_heir, films->n_heir, vapour_rate(&times->occupancy->vapour));
 }
 
 void film_supply_set_rates(struct emptying_times *times)
@@ -290,19 +292,4 @@ void film_supply_end_cluster(struct emptying_times *times, int cluster)
         films->source[films->n_source++] = heir;
         return;
     }
-}
-
-double film_evaporation(const struct emptying_times *times)
-{
-    const struct film_supply *films = times->films;
-    const struct occupancy *occupancy = times->occupancy;
-    const int n_throat = occupancy->network->n_throat;
-    double sum = 0;
-    for (int k = 0; k < occupancy->n_wet; k++) {
-        const int node = occupancy->wet[k];
-        if (occupancy->liquid_beside[node] == 0)
-            sum += (1 - films->own[n_throat + node]) *
-                   vapour_evaporation(&occupancy->vapour, node);
-    }
-    return sum;
 }

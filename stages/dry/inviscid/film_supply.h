@@ -15,6 +15,7 @@
 struct film_supply {
     double *own, *drawn; // (n_place) by reservoir: cluster, or n_throat + node
     double scale;
+    double evaporation; // scaled, of nodes without liquid in throats, that films bring
     int n_source;
     int *source; // (n_source) clusters from which films draw
     int n_heir, next_heir;
@@ -27,8 +28,7 @@ struct film_supply {
     bool is_due;                   // reservoirs have changed so that flows must be found
     double saturation;             // when last found
     bool failed;                   // they were not
-    int64_t solutions, iterations; // so far
-    double imbalance;              // largest |scale - 1| when just found
+    int64_t solutions;             // so far
 };
 
 // For TIMES, whose occupancy has a film law. The caller frees it with film_supply_free;
@@ -49,8 +49,5 @@ void film_supply_set_rates(struct emptying_times *times);
 // is SOURCE then, supplies what films drew from it.
 void film_supply_bare_node(struct emptying_times *times, int node);
 void film_supply_end_cluster(struct emptying_times *times, int cluster);
-
-// What evaporates from nodes while films bring it, scaled.
-double film_evaporation(const struct emptying_times *times);
 
 #endif

@@ -10,6 +10,8 @@
 
 #include "basics/memory.h"
 #include "dry/gas/boundary_layer.h"
+#include "dry/inviscid/film_supply.h"
+#include "film_history.h"
 #include "initial_saturation.h"
 #include "network/checks.h"
 #include "resume.h"
@@ -34,6 +36,8 @@ static void begin(struct run *run)
 {
     run->n_at_start = run->occupancy.n_liquid;
     run->first_rate = rate_now(run);
+    if (run->conditions->rings == RINGS_FILMS)
+        run->recorder.history->films = film_history_create();
     note_breakthrough(run);
     record_state(run);
 }
@@ -73,6 +77,8 @@ static void summarise(const struct run *run, struct drying_history *history)
     history->liquid_residual = run->flow.residual;
     history->flow_solutions = run->flow.solutions;
     history->flow_rounds = run->flow.rounds;
+    if (history->films && run->times.films)
+        history->films->solutions = run->times.films->solutions;
     if (run->conditions->stop_saturation > 0)
         truncate_history(history, run->occupancy.network,
                          run->conditions->stop_saturation);

@@ -7,8 +7,8 @@
 // that touches both liquid and gas is wet: its vapour is saturated, and what it
 // evaporates is shared to the liquid throats at the node in proportion to their
 // cross-sections. With rings a throat leaves liquid at the contacts around it, which
-// keeps its nodes wet until it has dried. Left out: liquid films, adsorption, viscosity
-// of the gas, gradients of temperature [K 3.4.2].
+// keeps its nodes wet until it has dried; films bring more to it if asked for. Left
+// out: adsorption, viscosity of the gas, gradients of temperature [K 3.4.2].
 //
 // Everything here is in SI units. Inside, lengths are scaled by the mean throat length
 // and vapour by its driving force, so that the same network at another scale gives the
@@ -22,6 +22,7 @@
 #include "network/network.h"
 
 struct ring_history;
+struct film_history;
 
 enum event_kind {
     EVENT_EMPTIED = 0, // completely
@@ -62,6 +63,7 @@ struct drying_history {
     double first_period_end_saturation;
 
     struct ring_history *rings; // what became of rings (ring_history.h); NULL: none
+    struct film_history *films; // with rings=films (film_history.h); NULL: none
 
     double boundary_layer_thickness; // m
     int boundary_layers;

@@ -10,6 +10,7 @@
 // rate must be read before gas fills anything, as it is that of the interval that ends
 // here.
 #include "dry/inviscid/film_supply.h"
+#include "film_history.h"
 #include "run.h"
 
 #include <math.h>
@@ -59,10 +60,14 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
 {
     struct emptying_times *times = &run->times;
     const double rate = rate_now(run);
+    const double by_films = times->films ? times->films->evaporation : 0;
     const double duration = emptying_times_advance(times);
     if (duration < 0) return refuse_standstill(run, reason);
     compensated_add(&run->time, duration);
     compensated_add(&run->evaporated, rate * duration);
+    if (run->recorder.history->films)
+        run->recorder.history->films->evaporated +=
+            by_films * duration * run->scale.mass;
     const double time = compensated_value(run->time) * run->scale.time;
     for (int k = 0; k < times->n_ended; k++) {
         if (times->ended[k] < run->occupancy.network->n_throat)

@@ -8,6 +8,7 @@
 #include "history.h"
 
 #include "basics/memory.h"
+#include "film_history.h"
 #include "ring_history.h"
 
 #include <stdlib.h>
@@ -161,5 +162,6 @@ void drying_history_free(struct drying_history *history)
     free(history->change_saturation);
     free(history->pressure);
     ring_history_free(history->rings);
+    film_history_free(history->films);
     *history = (struct drying_history){0};
 }

@@ -11,6 +11,8 @@
 // `evaporated` are compensated sums, as a run adds very many short intervals.
 #include "run.h"
 
+#include "film_history.h"
+
 #include "basics/sorted.h"
 
 #include <math.h>
@@ -77,6 +79,9 @@ void record_state(struct run *run)
     recorder_add_step(&run->recorder, compensated_value(run->time) * run->scale.time,
                       network_saturation(run), rate_now(run) * run->scale.rate,
                       run->occupancy.clusters.count);
+    if (run->recorder.history->films)
+        film_history_add(run->recorder.history->films, &run->times,
+                         run->conditions->open_walls, run->scale.rate);
     run->n_skipped = 0;
     run->step_saturation = network_saturation(run);
     run->step_time = run->time;

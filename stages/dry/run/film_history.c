@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth of a node: the least distance to an open wall of the box,
+//     depth = min over open walls of |x - wall|,   0 for nodes outside.
+#include "film_history.h"
+
+#include "basics/memory.h"
+#include "dry/inviscid/film_supply.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct film_history *film_history_create(void)
+{
+    return NEW_ARRAY(struct film_history, 1);
+}
+
+void film_history_free(struct film_history *films)
+{
+    if (!films) return;
+    free(films->evaporation);
+    free(films->depth);
+    free(films->deepest);
+    free(films);
+}
+
+static double depth_of(const struct network *network, int node, unsigned open_walls)
+{
+    double depth = INFINITY;
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        if (!(open_walls >> wall & 1)) continue;
+        const struct vector side =
+            wall % 2 ? network->packing.upper : network->packing.lower;
+        const double x = component(network->node_position[node], wall / 2);
+        const double inwards = x - component(side, wall / 2);
+        depth = fmin(depth, wall % 2 ? -inwards : inwards);
+    }
+    return fmax(depth, 0);
+}
+
+// The arrays share one capacity: the first two grow by a copy of it.
+static void make_room(struct film_history *films)
+{
+    int first = films->capacity, second = films->capacity;
+    GROW_ARRAY(films->evaporation, films->n, first);
+    GROW_ARRAY(films->depth, films->n, second);
+    GROW_ARRAY(films->deepest, films->n, films->capacity);
+}
+
+void film_history_add(struct film_history *films, const struct emptying_times *times,
+                      unsigned open_walls, double rate)
+{
+    const struct network *network = times->occupancy->network;
+    int reached = 0;
+    double sum = 0, deepest = 0;
+    for (int i = 0; times->films && i < network->n_node; i++) {
+        if (!times->films->reached[i]) continue;
+        const double depth = depth_of(network, i, open_walls);
+        reached++;
+        sum += depth;
+        deepest = fmax(deepest, depth);
+    }
+    make_room(films);
+    films->evaporation[films->n] = times->films ? times->films->evaporation * rate : 0;
+    films->depth[films->n] = reached > 0 ? sum / reached : 0;
+    films->deepest[films->n++] = deepest;
+}
