@@ -110,11 +110,13 @@ static void end_timer(struct emptying_times *times, int k)
     times->unused[times->n_unused++] = k;
 }
 
-// Whether the reservoir of timer K loses anything.
+// Whether the reservoir of timer K loses anything. With films it may stop, and go on
+// later with the throat that it has begun to empty.
 static bool is_needed(const struct emptying_times *times, int k)
 {
     return times->shares[k] > 0 ||
-           (times->films && times->films->drawn[times->owner[k]] > 0);
+           (times->films &&
+            (times->throat[k] >= 0 || times->films->drawn[times->owner[k]] > 0));
 }
 
 // Gives timers whose shares have changed their new rates, from now on.
@@ -147,8 +149,6 @@ static void find_sources(struct emptying_times *times)
         const int k = timer_of(times, source);
         if (times->throat[k] < 0) start_timer(times, k);
     }
-    for (int k = 0; k < times->n; k++)
-        if (times->owner[k] >= 0 && !is_needed(times, k)) end_timer(times, k);
 }
 
 // New rates after an event. ALL_CHANGED: a node has dried, so that what every other

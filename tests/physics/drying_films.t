@@ -1,0 +1,147 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Films of finite resistance in `dry`: their books, their two limits (rings that nothing joins, films without
+# resistance), what sizes and rates do to their reach, and what is refused.
+import filecmp
+import os
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import BIN, WATER, done, ok, run, scratch
+
+R = 1e-6
+folder = scratch()
+
+
+def at(name):
+    return os.path.join(folder.name, name)
+
+
+def words(settings):
+    return [w for s in settings for w in ("-s", s)]
+
+
+def network(name, radius):
+    run("pack", "-q", *words(["method=soft_spheres", "count=60", f"radius={radius}", "sizes.distribution=normal",
+                              "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
+    run("tessellate", "-q", *words(["throat_volume=void", "throat_radius=entry"]), at("packing"), "-o", at("diagram"))
+    run("merge-nodes", "-q", at("diagram"), "-o", at(name))
+    return at(name)
+
+
+def dry(path, *settings, name="drying", options=()):
+    run("dry", "-q", *options, *words(["step_interval=0", *WATER, *settings]), path, "-o", at(name))
+    return h5py.File(at(name))
+
+
+def replayed(file, n, group, what):
+    """What is in each of N throats, or nodes' rings, at each step."""
+    row, state = np.ones(n), []
+    offset, index, value = (file[f"{group}/{name}"][:] for name in ("offset", what, "saturation"))
+    for begin, end in zip(offset, offset[1:]):
+        row[index[begin:end]] = value[begin:end]
+        state.append(row.copy())
+    return np.array(state)
+
+
+def books(file):
+    """Largest difference between /history/saturation and its throats and rings, or its rates."""
+    volume, ends = file["throats/volume"][:], file["throats/nodes"][:]
+    throats = replayed(file, len(volume), "changes", "throat")
+    nodes = replayed(file, len(file["nodes/kind"]), "ring_changes", "node")
+    left = np.bincount(file["rings/throat"][:], file["rings/volume"][:], len(volume))
+    total = (throats * (volume - left) + nodes[:, ends].mean(axis=2) * left).sum(axis=1) / volume.sum()
+    saturation, time, rate = (file[f"history/{name}"][:] for name in ("saturation", "time", "rate"))
+    lost = np.append(0, np.cumsum(rate[:-1] * np.diff(time))) * saturation[0] / file["summary"].attrs["liquid_mass"]
+    return max(abs(total - saturation).max(), abs(saturation[0] - lost - saturation).max()), throats, nodes
+
+
+def differences(one, other):
+    """Names of what is not the same, to the bit, in two histories."""
+    names = [f"{group}/{key}" for group in ("history", "events", "changes", "ring_changes") for key in other[group]
+             if not key.startswith("film")]
+    return [name for name in names if name not in one or not np.array_equal(one[name][:], other[name][:])]
+
+
+def rate_at(file, levels):
+    saturation, rate = file["history/saturation"][:], file["history/normalised_rate"][:]
+    return np.array([rate[np.flatnonzero(saturation <= level)[0]] for level in levels])
+
+
+LEVELS = [0.9, 0.7, 0.5, 0.3, 0.1]
+net = network("network", R)
+
+# ---- books --------------------------------------------------------------------------------
+
+rates = {}
+for settings in ([], ["films.conductance=0.03"], ["films.conductance=0.03", "films.step=0.01"], ["contact_angle=40"],
+                 ["films.corners=4", "films.half_angle=45"], ["stop_saturation=0.4"], ["start_saturation=0.6"],
+                 ["films.conductance=0.03", "vapour_tolerance=1e-6"]):
+    with dry(net, "rings=films", *settings) as file:
+        error, throats, nodes = books(file)
+        summary = dict(file["summary"].attrs)
+        ok(error < 1e-12 and summary["balance_error"] < 1e-12 and summary["residual"] < 1e-12,
+           f"{settings or 'films'}: throats, rings and vapour add up at all steps", (error, summary))
+        ends = file["throats/nodes"][:]
+        ok(not ((nodes < 1)[:, ends].any(axis=2) & (throats > 0)).any(), "no rings dry beside a throat that holds liquid")
+        history = {name: file[f"history/{name}"][:] for name in ("rate", "film_evaporation", "film_depth", "film_deepest")}
+        ok((history["film_evaporation"] <= history["rate"] * (1 + 1e-12)).all() and
+           (history["film_depth"] <= history["film_deepest"] * (1 + 1e-12)).all() and history["film_deepest"].max() > 0,
+           "films bring no more than evaporates", {name: max(array) for name, array in history.items()})
+        rates[tuple(settings)] = rate_at(file, [0.2, 0.15, 0.1]) if not settings or "=0.03" in settings[0] else None
+one, default = rates[("films.conductance=0.03",)], rates[()]
+ok((default > 1.2 * one).all(), "films that conduct more keep the rate up", (default, one))
+
+# ---- limits -------------------------------------------------------------------------------
+
+isolated = dry(net, "rings=isolated", name="isolated")
+for settings in ["films.conductance=0"], ["films.half_angle=60", "contact_angle=30.1"]:
+    other = isolated if len(settings) == 1 else dry(net, "rings=isolated", settings[1], name="at_angle")
+    with dry(net, "rings=films", *settings) as file:
+        ok(not differences(file, other) and not file["history/film_deepest"][:].any(),
+           f"{settings}: without films the drying of isolated rings, to the bit", differences(file, other))
+with dry(net, "rings=films", "films.conductance=1e-12") as file:
+    ok(np.array_equal(file["events/throat"][:], isolated["events/throat"][:]) and
+       np.allclose(file["events/time"][:], isolated["events/time"][:], rtol=1e-5, atol=0),
+       "films that conduct next to nothing: nearly so", abs(file["events/time"][:] / isolated["events/time"][:] - 1).max())
+with dry(net, "rings=joined", name="joined") as joined, dry(net, "rings=films", "films.conductance=1e5") as file:
+    ok(np.allclose(rate_at(file, LEVELS), rate_at(joined, LEVELS), rtol=1e-6) and
+       abs(file["summary"].attrs["residual_saturation"] / joined["summary"].attrs["residual_saturation"] - 1) < 1e-6 and
+       abs(file["history/time"][-1] / joined["history/time"][-1] - 1) < 1e-6,
+       "films that conduct well: the rates of films without resistance", (rate_at(file, LEVELS), rate_at(joined, LEVELS)))
+
+# ---- similar ------------------------------------------------------------------------------
+
+# Q = n C gamma / (3 beta nu) r^3 / L: with all lengths times 8 a body dries alike if nu / gamma is 8 times as large, as
+# r^3 / L grows by 64 and the rate by 8. The factor, gamma and 1 / nu are one number. Grains of powers of two: to the bit.
+reference = dry(net, "rings=films", "films.conductance=0.03", name="reference")
+for what, path, settings in (
+        ("all lengths times 8 and the viscosity too", network("larger", 8 * R),
+         ["films.conductance=0.03", "viscosity=8.0272e-6", "boundary_layer.thickness=4e-5"]),
+        ("an eighth of the conductance, and of the viscosity", net, ["films.conductance=0.00375", "viscosity=1.25425e-7"])):
+    with dry(net, "rings=films", "films.conductance=0.03", "viscosity=1.0034e-6", name="base") as base, \
+         dry(path, "rings=films", *settings) as file:
+        time = file["history/time"][:] / file["history/time"][-1]
+        ok(np.array_equal(file["events/throat"][:], base["events/throat"][:]) and
+           np.allclose(time, base["history/time"][:] / base["history/time"][-1], rtol=1e-9, atol=0),
+           f"{what}: dries alike", len(time))
+
+# ---- threads, refusals ----------------------------------------------------------------------
+
+dry(net, "rings=films", "films.conductance=0.03", name="two", options=["--threads", "2"]).close()
+ok(filecmp.cmp(at("reference"), at("two"), shallow=False), "one thread and two give the same bytes")
+for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is viscous"),
+                       (["liquid=immobile"], "rings: must not be films where liquid is immobile"),
+                       (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved"),
+                       (["gravity=9.81"], "gravity: must be 0 with rings=films"),
+                       (["films.half_angle=90"], "films.half_angle"), (["films.conductance=-1"], "films.conductance")]:
+    refused = subprocess.run([f"{BIN}/dry", "-q", *words(["rings=films", *settings]), net], capture_output=True, text=True, check=False)
+    ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
+refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=films", net, "-o", at("no")],
+                         capture_output=True, text=True, check=False)
+ok(refused.returncode == 65 and "rings: must be none where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
+done()
