@@ -54,9 +54,10 @@ static void describe_films(const struct drying_conditions *conditions, char *tex
     const double degree = M_PI / 180, half = films->half_angle * degree;
     const double angle = conditions->contact_angle * degree;
     char line[320];
-    append(text, size,
-           "rings stay at contacts as throats empty, exact bridges, and dry where films "
-           "do not reach\n");
+    append(
+        text, size,
+        "rings stay at contacts as throats empty, exact bridges, and dry where films "
+        "do not reach\n");
     if (corner_holds_film(half, angle))
         snprintf(line, sizeof line,
                  "films in %.6g corners of half angle %.6g degrees of each throat that "

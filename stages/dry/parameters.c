@@ -27,6 +27,7 @@ static const double COARSE_STEPS = 1e-3;
 
 // The same for films.step.
 enum { MAX_THROATS_BY_FLOWS = 3000 };
+static const double FLOW_STEPS = 2e-3;
 
 #define AT(member) offsetof(struct dry_parameters, member)
 #define GIVEN AT(given)
@@ -67,13 +68,13 @@ const struct parameter dry_table[] = {
      .text = "half of the angle between the walls of a corner: 30 and three corners "
              "are a triangle, 45 and four a square; no films where this and "
              "contact_angle make 90 or more"},
-    {"films.conductance", PARAMETER_NUMBER, "1", "1",
-     AT(conditions.films.conductance), BETWEEN(0, 1e12),
+    {"films.conductance", PARAMETER_NUMBER, "1", "1", AT(conditions.films.conductance),
+     BETWEEN(0, 1e12),
      .text = "factor of what films conduct; 0: none, as rings=isolated"},
     {"films.step", PARAMETER_NUMBER, "1", "null", AT(conditions.films.step),
      BETWEEN(0, 1),
      .text = "fall of the saturation after which the flow in films is found again; 0: "
-             "at each event; null: 0 up to 3000 throats, 0.001 in larger networks"},
+             "at each event; null: 0 up to 3000 throats, 0.002 in larger networks"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
      .text = "viscous: the flow is computed again when the saturation of a throat has "
@@ -240,6 +241,6 @@ enum status complete_conditions(struct dry_parameters *parameters,
             count_throats(network) > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
     if (isnan(conditions->films.step))
         conditions->films.step =
-            count_throats(network) > MAX_THROATS_BY_FLOWS ? COARSE_STEPS : 0;
+            count_throats(network) > MAX_THROATS_BY_FLOWS ? FLOW_STEPS : 0;
     return STATUS_OK;
 }

@@ -21,7 +21,8 @@
 
 static const double degree = M_PI / 180;
 
-// ---- corners ----------------------------------------------------------------------------
+// ---- corners
+// ----------------------------------------------------------------------------
 
 // Three corners of a triangle, or four of a square, around its inscribed circle.
 static void test_area_is_that_beside_a_circle(void **state)
@@ -40,12 +41,8 @@ static void test_resistance(void **state)
     (void)state;
     static const struct {
         double half_angle, contact_angle, resistance;
-    } by_series[] = {{20, 0, 16.411962},
-                     {30, 0, 30.088334},
-                     {44.999, 0, 91.361279},
-                     {60, 0, 432.06151},
-                     {30, 30, 54.028214},
-                     {30, 50, 344.48796}};
+    } by_series[] = {{20, 0, 16.411962}, {30, 0, 30.088334},  {44.999, 0, 91.361279},
+                     {60, 0, 432.06151}, {30, 30, 54.028214}, {30, 50, 344.48796}};
     for (size_t k = 0; k < sizeof by_series / sizeof *by_series; k++)
         assert_close(corner_resistance(by_series[k].half_angle * degree,
                                        by_series[k].contact_angle * degree),
@@ -73,7 +70,8 @@ static void test_no_film_where_angles_make_90_degrees(void **state)
     assert_false(corner_holds_film(45 * degree, 45.1 * degree));
 }
 
-// ---- drying with films ------------------------------------------------------------------
+// ---- drying with films
+// ------------------------------------------------------------------
 
 static const double spacing = 5e-7;
 
@@ -217,9 +215,9 @@ static void set_rates(const struct chain *chain, struct closed_form *form)
         resistance += 1 / volume_of(chain, k); // of length 1
     form->evaporates = 1 / resistance;
     const double r = radius_of(chain, form->n) / 2;
-    form->most = form->n > form->m ? chain->drying.law.conductance * (r * r * r) /
-                                         (form->n - form->m)
-                                   : INFINITY;
+    form->most = form->n > form->m
+                     ? chain->drying.law.conductance * (r * r * r) / (form->n - form->m)
+                     : INFINITY;
 }
 
 // The next event: its time from the last.
@@ -335,7 +333,8 @@ static void test_radius_cubed_is_linear(void **state)
     end_drying(drying);
 }
 
-// ---- a lattice --------------------------------------------------------------------------
+// ---- a lattice
+// --------------------------------------------------------------------------
 
 // Layers that empty from the top down, as the radii fall a little with depth. Returns
 // how many layers are empty when a film first does not reach a node.

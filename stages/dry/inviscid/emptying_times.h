@@ -24,8 +24,8 @@ struct film_supply;
 
 struct emptying_times {
     struct occupancy *occupancy;
-    bool by_throat; // a reservoir for each throat; else for each cluster
-    int n_place;    // throats; with rings n_throat + n_node
+    bool by_throat;            // a reservoir for each throat; else for each cluster
+    int n_place;               // throats; with rings n_throat + n_node
     struct film_supply *films; // NULL: none of finite resistance
 
     int n_share;

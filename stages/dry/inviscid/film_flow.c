@@ -62,12 +62,13 @@ static struct free_sites free_sites_init(const struct film_flow *flow)
                                .residual = NEW_ARRAY(double, n_all)};
     number_free(flow, &sites);
     struct conductance_matrix *matrix = &sites.matrix;
-    *matrix = (struct conductance_matrix){.n = sites.n,
-                                          .n_all = all->n,
-                                          .offset = NEW_ARRAY(int, n_all + 2),
-                                          .column = NEW_ARRAY(int, all->offset[all->n]),
-                                          .value = NEW_ARRAY(double, all->offset[all->n]),
-                                          .diagonal = NEW_ARRAY(double, n_all)};
+    *matrix =
+        (struct conductance_matrix){.n = sites.n,
+                                    .n_all = all->n,
+                                    .offset = NEW_ARRAY(int, n_all + 2),
+                                    .column = NEW_ARRAY(int, all->offset[all->n]),
+                                    .value = NEW_ARRAY(double, all->offset[all->n]),
+                                    .diagonal = NEW_ARRAY(double, n_all)};
     for (int row = 0; row < all->n; row++) {
         const int i = sites.site[row];
         sites.level[row] = flow->level[i];
@@ -145,8 +146,8 @@ static int change_held(struct film_flow *flow, double tolerance, const double *r
     int changed = 0;
     for (int i = 0; i < flow->matrix->n; i++) {
         const double level = compensated_value(flow->level[i]);
-        const bool hold = flow->held[i] ? !(residual[i] > tolerance)
-                                        : level < flow->least[i];
+        const bool hold =
+            flow->held[i] ? !(residual[i] > tolerance) : level < flow->least[i];
         changed += hold != flow->held[i];
         flow->held[i] = hold;
         if (hold) flow->level[i] = (struct compensated){.value = flow->least[i]};
@@ -160,7 +161,8 @@ bool film_flow_solve(struct film_flow *flow, double tolerance)
     double *residual = NEW_ARRAY(double, n), *given = NEW_ARRAY(double, n);
     for (int i = 0; i < n; i++) {
         given[i] = -flow->taken[i];
-        if (flow->held[i]) flow->level[i] = (struct compensated){.value = flow->least[i]};
+        if (flow->held[i])
+            flow->level[i] = (struct compensated){.value = flow->least[i]};
     }
     bool found = false;
     double coarse = COARSE * tolerance;

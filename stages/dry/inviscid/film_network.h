@@ -15,8 +15,8 @@
 // It owns its arrays. Only sites that films join to a cluster are there.
 struct film_network {
     int n_site;
-    int *place; // (n_site) a cluster, or n_throat + node
-    int *root;  // (n_site) the first site that films join to it
+    int *place;                       // (n_site) a cluster, or n_throat + node
+    int *root;                        // (n_site) the first site that films join to it
     struct conductance_matrix matrix; // (n_site) conductances, scaled
 };
 

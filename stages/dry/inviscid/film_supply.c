@@ -79,7 +79,8 @@ bool film_supply_is_due(const struct emptying_times *times)
            films->saturation - saturation_now(times->occupancy) >= step;
 }
 
-// --- finding ---------------------------------------------------------------------------
+// --- finding
+// ---------------------------------------------------------------------------
 
 // The cube of the radius of films beside CLUSTER.
 static double least_level(const struct emptying_times *times, int cluster)
@@ -87,9 +88,8 @@ static double least_level(const struct emptying_times *times, int cluster)
     struct occupancy *occupancy = times->occupancy;
     const int timer = times->timer[cluster];
     const int losing = timer >= 0 ? times->throat[timer] : -1;
-    const int throat = losing >= 0
-                           ? losing
-                           : clusters_invasion_throat(&occupancy->clusters, cluster);
+    const int throat =
+        losing >= 0 ? losing : clusters_invasion_throat(&occupancy->clusters, cluster);
     const double radius = occupancy->film_law->curvature *
                           occupancy->network->throat_radius[throat] / occupancy->length;
     return radius * radius * radius;
@@ -165,8 +165,7 @@ static void list_heirs(struct film_supply *films, const struct film_network *net
         if (network->place[i] < n_throat && !flow->held[i])
             heir[films->n_heir++] = (struct heir){
                 compensated_value(flow->level[i]) - flow->least[i], network->place[i]};
-    if (films->n_heir > 1)
-        qsort(heir, (size_t)films->n_heir, sizeof *heir, nearer);
+    if (films->n_heir > 1) qsort(heir, (size_t)films->n_heir, sizeof *heir, nearer);
     for (int k = 0; k < films->n_heir; k++)
         films->heir[k] = heir[k].cluster;
     free(heir);
@@ -233,7 +232,8 @@ void film_supply_find(struct emptying_times *times)
     film_network_free(&network);
 }
 
-// --- rates -----------------------------------------------------------------------------
+// --- rates
+// -----------------------------------------------------------------------------
 
 // Sums are of positive numbers, but for the rounding of own.
 static void find_scale(struct emptying_times *times)
@@ -270,7 +270,8 @@ void film_supply_set_rates(struct emptying_times *times)
     }
 }
 
-// --- between solutions -----------------------------------------------------------------
+// --- between solutions
+// -----------------------------------------------------------------
 
 void film_supply_bare_node(struct emptying_times *times, int node)
 {

@@ -9,8 +9,8 @@
 // linear in r^3 (Yiotis et al. 2003).
 //
 // By symmetry half the liquid is enough. Along the wall, x, it lies below
-//     H = x tan a               up to the bisector's end, x_m = (cos t / sin a - 1) cos a,
-//     H = cos t - sqrt(1 - (cos t cot a - x)^2)   up to x_c = cos(t + a) / sin a,
+//     H = x tan a               up to the bisector's end, x_m = (cos t / sin a - 1) cos
+//     a, H = cos t - sqrt(1 - (cos t cot a - x)^2)   up to x_c = cos(t + a) / sin a,
 // and at H no condition is imposed: on the bisector and the meniscus the derivative
 // across vanishes. Bilinear elements between x lines, y = s H, have an error in the
 // integral that falls as h^2; two grids and extrapolation leave 1e-5.
@@ -49,7 +49,7 @@ static struct corner_grid grid_init(int n, double a, double t)
     struct corner_grid grid = {.n = n,
                                .x = NEW_ARRAY(double, 2 * n + 1),
                                .height = NEW_ARRAY(double, 2 * n + 1),
-                               .band = NEW_ARRAY(double, unknowns * (size_t)(n + 2)),
+                               .band = NEW_ARRAY(double, unknowns *(size_t)(n + 2)),
                                .load = NEW_ARRAY(double, unknowns)};
     const double middle = (cos(t) / sin(a) - 1) * cos(a), centre = cos(t) / tan(a);
     for (int i = 0; i < n; i++) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A film has the suction of the liquid that it is joined to, and a meniscus that is
-// curved one way only: r = gamma / p_c. Gas enters a throat of radius R at p_c = 2 gamma
-// cos(theta) / R, so beside a cluster that is at the point of losing this throat
+// curved one way only: r = gamma / p_c. Gas enters a throat of radius R at p_c = 2
+// gamma cos(theta) / R, so beside a cluster that is at the point of losing this throat
 //     r = R / (2 cos theta).
 // A throat has n corners, all alike, along its length L, and passes
 //     rho n (C / 3 beta) gamma / (mu L) (r^3 - s^3)      kg/s
