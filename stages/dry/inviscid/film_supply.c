@@ -26,7 +26,7 @@ static const double TOLERANCE = 1e-9;
 // Between two solutions films draw at most so much more from the sources that are left.
 static const double MOST_STRAY = 2;
 
-// How far above its least a cluster floats.
+// How far above its least a cluster floats. In hold_nearest: its site.
 struct heir {
     double gap;
     int cluster;
@@ -95,6 +95,13 @@ static double least_level(const struct emptying_times *times, int cluster)
     return radius * radius * radius;
 }
 
+static int nearer(const void *a, const void *b)
+{
+    const struct heir *x = a, *y = b;
+    if (x->gap != y->gap) return x->gap < y->gap ? -1 : 1;
+    return (x->cluster > y->cluster) - (x->cluster < y->cluster);
+}
+
 // In each part of the network, holds the cluster of the largest least.
 static void hold_highest(const struct film_network *network, int n_throat,
                          const double *least, bool *held)
@@ -110,6 +117,26 @@ static void hold_highest(const struct film_network *network, int n_throat,
     for (int i = 0; i < network->n_site; i++)
         if (highest[i] >= 0) held[highest[i]] = true;
     free(highest);
+}
+
+// As many clusters as in the last solution are held: those whose least is now highest
+// above the level that they had, or least below it.
+static void hold_nearest(const struct film_network *network, int n_throat,
+                         struct film_flow *flow)
+{
+    struct heir *cluster = NEW_ARRAY(struct heir, network->n_site);
+    int n = 0, n_held = 0;
+    for (int i = 0; i < network->n_site; i++) {
+        if (network->place[i] >= n_throat) continue;
+        n_held += flow->held[i];
+        cluster[n++] =
+            (struct heir){compensated_value(flow->level[i]) - flow->least[i], i};
+        flow->held[i] = false;
+    }
+    if (n > 1) qsort(cluster, (size_t)n, sizeof *cluster, nearer);
+    for (int k = 0; k < n_held; k++)
+        flow->held[cluster[k].cluster] = true;
+    free(cluster);
 }
 
 // A first guess from the last solution. The cluster of the largest least is always
@@ -130,6 +157,7 @@ static void pose(const struct emptying_times *times, const struct film_network *
         }
         flow->level[i] = films->level[place];
     }
+    hold_nearest(network, n_throat, flow);
     hold_highest(network, n_throat, least, flow->held);
 }
 
@@ -146,13 +174,6 @@ static void note_site(struct film_supply *films, int place, int n_throat, double
         films->drawn[place] = flow;
         films->source[films->n_source++] = place;
     }
-}
-
-static int nearer(const void *a, const void *b)
-{
-    const struct heir *x = a, *y = b;
-    if (x->gap != y->gap) return x->gap < y->gap ? -1 : 1;
-    return (x->cluster > y->cluster) - (x->cluster < y->cluster);
 }
 
 // Who supplies, in this order, when sources end before the next solution.
@@ -276,6 +297,7 @@ void film_supply_set_rates(struct emptying_times *times)
 void film_supply_bare_node(struct emptying_times *times, int node)
 {
     times->films->own[times->occupancy->network->n_throat + node] = 0;
+    times->films->reached[node] = true;
 }
 
 void film_supply_end_cluster(struct emptying_times *times, int cluster)
@@ -284,6 +306,8 @@ void film_supply_end_cluster(struct emptying_times *times, int cluster)
     const double drawn = films->drawn[cluster];
     films->own[cluster] = 1;
     films->drawn[cluster] = 0;
+    films->floats[cluster] = false;
+    films->level[cluster] = (struct compensated){0};
     while (drawn > 0 && films->next_heir < films->n_heir) {
         const int heir = films->heir[films->next_heir++];
         if (times->occupancy->clusters.size[heir] == 0 || films->drawn[heir] > 0)

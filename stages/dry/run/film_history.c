@@ -49,12 +49,13 @@ static void make_room(struct film_history *films)
 void film_history_add(struct film_history *films, const struct emptying_times *times,
                       unsigned open_walls, double rate)
 {
-    const struct network *network = times->occupancy->network;
+    const struct occupancy *occupancy = times->occupancy;
     int reached = 0;
     double sum = 0, deepest = 0;
-    for (int i = 0; times->films && i < network->n_node; i++) {
-        if (!times->films->reached[i]) continue;
-        const double depth = depth_of(network, i, open_walls);
+    for (int k = 0; times->films && k < occupancy->n_wet; k++) {
+        if (!times->films->reached[occupancy->wet[k]]) continue;
+        const double depth =
+            depth_of(occupancy->network, occupancy->wet[k], open_walls);
         reached++;
         sum += depth;
         deepest = fmax(deepest, depth);
