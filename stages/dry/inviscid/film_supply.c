@@ -79,8 +79,7 @@ bool film_supply_is_due(const struct emptying_times *times)
            films->saturation - saturation_now(times->occupancy) >= step;
 }
 
-// --- finding
-// ---------------------------------------------------------------------------
+// --- finding -----------------------------------------------------------------------
 
 // The cube of the radius of films beside CLUSTER.
 static double least_level(const struct emptying_times *times, int cluster)
@@ -253,8 +252,7 @@ void film_supply_find(struct emptying_times *times)
     film_network_free(&network);
 }
 
-// --- rates
-// -----------------------------------------------------------------------------
+// --- rates -------------------------------------------------------------------------
 
 // Sums are of positive numbers, but for the rounding of own.
 static void find_scale(struct emptying_times *times)
@@ -291,8 +289,7 @@ void film_supply_set_rates(struct emptying_times *times)
     }
 }
 
-// --- between solutions
-// -----------------------------------------------------------------
+// --- between solutions -------------------------------------------------------------
 
 void film_supply_bare_node(struct emptying_times *times, int node)
 {
