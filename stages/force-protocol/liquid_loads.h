@@ -4,18 +4,7 @@
 #ifndef CRAQUELURE_LIQUID_LOADS_H
 #define CRAQUELURE_LIQUID_LOADS_H
 
-#include "network/drying_record.h"
-
-// The rings that throats left (drying.json); n = 0: none are known.
-struct ring_record {
-    int n;
-    int32_t *face;                // (n)
-    double *separation;           // (n) m
-    int64_t *offset;              // (n+1) parts
-    int32_t *throat;              // (offset[n])
-    double *volume;               // (offset[n]) m3
-    struct drying_record changes; // of nodes, in place of throats; without times
-};
+#include "network/ring_record.h"
 
 // The drying, as read from its artifact.
 struct liquid_record {

@@ -55,24 +55,14 @@ static void read_pressures(const struct artifact *input, struct liquid_record *r
             input_name(input->path), needed[0]);
 }
 
-static void read_rings(const struct artifact *input, struct liquid_record *record)
+static struct ring_record read_rings(const struct artifact *input)
 {
-    struct ring_record *rings = &record->rings;
-    if (!artifact_has_dataset(input, "/rings/throat") ||
-        !artifact_has_dataset(input, "/ring_changes/offset"))
+    if (!artifact_has_rings(input))
         die(STATUS_BAD_DATA,
-            "%s: /rings/throat: rings.left=drying needs it: dry with rings=isolated or "
-            "joined",
+            "%s: /rings/throat: rings.left=drying needs it: dry with rings=isolated, "
+            "joined or films",
             input_name(input->path));
-    rings->face = artifact_get(input, "/rings/face", &rings->n);
-    rings->separation = artifact_get(input, "/rings/separation", NULL);
-    rings->offset = artifact_get(input, "/rings/offset", NULL);
-    rings->throat = artifact_get(input, "/rings/throat", NULL);
-    rings->volume = artifact_get(input, "/rings/volume", NULL);
-    rings->changes.offset = artifact_get(input, "/ring_changes/offset", NULL);
-    rings->changes.throat = artifact_get(input, "/ring_changes/node", NULL);
-    rings->changes.throat_saturation =
-        artifact_get(input, "/ring_changes/saturation", NULL);
+    return artifact_get_rings(input);
 }
 
 struct liquid_record read_record(const struct artifact *input,
@@ -84,19 +74,14 @@ struct liquid_record read_record(const struct artifact *input,
         die(STATUS_BAD_DATA, "%s: /history/time: must have at least one row",
             input_name(input->path));
     if (field) read_pressures(input, &record);
-    if (rings) read_rings(input, &record);
+    if (rings) record.rings = read_rings(input);
     return record;
 }
 
 void free_record(struct liquid_record *record)
 {
     drying_record_free(&record->drying);
-    drying_record_free(&record->rings.changes);
-    free(record->rings.face);
-    free(record->rings.separation);
-    free(record->rings.offset);
-    free(record->rings.throat);
-    free(record->rings.volume);
+    ring_record_free(&record->rings);
     free(record->exposed);
     free(record->snapshot_time);
     free(record->pressure);

@@ -31,7 +31,9 @@ static const struct argp_option option_table[] = {
     {"data", 'd', "NAME", 0, "Print one dataset, as nested lists", 0},
     {"vtk", KEY_VTK, "PREFIX", 0,
      "Write everything that changes over time as PREFIX-0000.vtu ... and PREFIX.pvd, "
-     "for ParaView: liquid in the throats, forces, cracks and displacements",
+     "for ParaView: liquid in the throats (that in rings as PREFIX-rings), forces, "
+     "cracks and "
+     "displacements",
      0},
     {"frames", KEY_FRAMES, "N", 0, "Frames of a drying or of forces [11]", 0},
     {"openpnm", KEY_OPENPNM, "FILE", 0,

@@ -11,6 +11,7 @@
 //
 //     kind      points              lines              arrays
 //     drying    nodes               throats            saturation, radius, kind
+//               grains              rings              volume; in files of their own
 //     forces    grains              none               force, radius
 //     response  grains, moved       contacts           displacement, force, radius;
 //                                                      contact_force, crack, and of
@@ -21,30 +22,13 @@
 
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "frames.h"
 #include "geometry/neighbours.h"
-#include "vtu.h"
+#include "ring_frames.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-struct series {
-    const char *prefix;
-    struct vtu_frame *frame;
-    int count, capacity;
-};
-
-// One file a frame; a file of frames and times (.pvd) comes last.
-static void add_frame(struct series *series, double time, const struct vtu_grid *grid)
-{
-    GROW_ARRAY(series->frame, series->count, series->capacity);
-    struct vtu_frame *frame = &series->frame[series->count];
-    snprintf(frame->file, sizeof frame->file, "%s-%04d.vtu", series->prefix,
-             series->count);
-    frame->time = time;
-    series->count++;
-    write_vtu(frame->file, grid);
-}
 
 // VTK arrays here are of doubles. The caller frees them.
 static double *as_doubles(const uint8_t *values, int count)
@@ -61,45 +45,82 @@ static double frame_saturation(int frame, int n_frame)
     return 1 - (double)frame / (n_frame > 1 ? n_frame - 1 : 1);
 }
 
-// Liquid in the throats. A step may pass several levels at once: then one frame stands
-// for all of them. LIQUID is the state that apply_changes brings from step to step; the
-// grid points to it, so each frame shows the present one.
-static void drying_series(const struct artifact *artifact, struct series *series,
+// A drying at the step that it has come to: SATURATION (n_throat) of the throats, to
+// which GRID points, and their rings, if it has any.
+struct drying_view {
+    const struct drying_record *record;
+    double *saturation;
+    struct vtu_grid grid;
+    struct frames *frames;
+    struct ring_frames *rings; // NULL: none
+};
+
+static void take_step(struct drying_view *view, int step)
+{
+    apply_changes(view->record, step, view->saturation);
+    if (view->rings) ring_frames_step(view->rings, step);
+}
+
+static void add_frames(struct drying_view *view, int step)
+{
+    const double time = view->record->time[step];
+    add_frame(view->frames, time, &view->grid);
+    if (view->rings) ring_frames_add(view->rings, time, view->saturation);
+}
+
+// A step may pass several levels at once: then one frame stands for all of them.
+static void follow_drying(struct drying_view *view, int n_frame)
+{
+    for (int step = 0, frame = 0; step < view->record->n_step; step++) {
+        const double saturation = view->record->saturation[step];
+        take_step(view, step);
+        if (saturation > frame_saturation(frame, n_frame)) continue;
+        add_frames(view, step);
+        while (frame < n_frame && saturation <= frame_saturation(frame, n_frame))
+            frame++;
+        if (frame == n_frame) break;
+    }
+}
+
+static void drying_series(const struct artifact *artifact, struct frames *frames,
                           int n_frame)
 {
     struct network network = artifact_get_periodic_network(artifact);
     int32_t(*drawn)[2] = drawn_throats(&network);
     struct drying_record record = artifact_get_drying(artifact);
-    double *liquid = full_saturations(&network);
+    double *saturation = full_saturations(&network);
     double *kind = as_doubles(network.throat_kind, network.n_throat);
-    const struct vtu_array cells[] = {{"saturation", liquid, 1, NULL},
+    const struct vtu_array cells[] = {{"saturation", saturation, 1, NULL},
                                       {"radius", network.throat_radius, 1, NULL},
                                       {"kind", kind, 1, NULL},
                                       {0}};
-    const struct vtu_grid grid = {.n_point = network.n_node,
-                                  .point = network.node_position,
-                                  .n_line = network.n_throat,
-                                  .line = (const int32_t(*)[2])drawn,
-                                  .cells = cells,
-                                  .shown = "saturation"};
-    for (int step = 0, frame = 0; step < record.n_step; step++) {
-        const double saturation = record.saturation[step];
-        apply_changes(&record, step, liquid);
-        if (saturation > frame_saturation(frame, n_frame)) continue;
-        add_frame(series, record.time[step], &grid);
-        while (frame < n_frame && saturation <= frame_saturation(frame, n_frame))
-            frame++;
-        if (frame == n_frame) break;
+    struct drying_view view = {.record = &record,
+                               .saturation = saturation,
+                               .grid = {.n_point = network.n_node,
+                                        .point = network.node_position,
+                                        .n_line = network.n_throat,
+                                        .line = (const int32_t(*)[2])drawn,
+                                        .cells = cells,
+                                        .shown = "saturation"},
+                               .frames = frames};
+    char prefix[4096];
+    snprintf(prefix, sizeof prefix, "%s-rings", frames->prefix);
+    struct ring_frames rings;
+    if (artifact_has_rings(artifact)) {
+        rings = ring_frames_begin(artifact, &network, prefix);
+        view.rings = &rings;
     }
+    follow_drying(&view, n_frame);
+    if (view.rings) ring_frames_end(view.rings);
     drying_record_free(&record);
-    free(liquid);
+    free(saturation);
     free(kind);
     free(drawn);
     network_free(&network);
 }
 
 // Force on the grains. The first and the last row are always taken.
-static void forces_series(const struct artifact *artifact, struct series *series,
+static void forces_series(const struct artifact *artifact, struct frames *frames,
                           int n_frame)
 {
     struct packing packing = artifact_get_packing(artifact);
@@ -113,7 +134,7 @@ static void forces_series(const struct artifact *artifact, struct series *series
             {"force", &force[(size_t)m * (size_t)packing.n_particle].x, 3, NULL},
             {"radius", packing.radius, 1, NULL},
             {0}};
-        add_frame(series, time[m],
+        add_frame(frames, time[m],
                   &(struct vtu_grid){.n_point = packing.n_particle,
                                      .point = packing.position,
                                      .points = points,
@@ -183,7 +204,7 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
 
 // Displacements of the grains; forces, cracks and liquid bridges at the contacts.
 // Contacts are those of all snapshots, with forces of 0 where one is open.
-static void response_series(const struct artifact *artifact, struct series *series)
+static void response_series(const struct artifact *artifact, struct frames *frames)
 {
     static const char *const bridge_name[] = {
         "/snapshots/bridge_volume", "/snapshots/bridge_force", "/snapshots/bridge_gap"};
@@ -221,7 +242,7 @@ static void response_series(const struct artifact *artifact, struct series *seri
             {"bridge_force", wet ? bridge[1] + row : NULL, 1, NULL},
             {"bridge_gap", wet ? bridge[2] + row : NULL, 1, NULL},
             {0}};
-        add_frame(series, time[s],
+        add_frame(frames, time[s],
                   &(struct vtu_grid){.n_point = packing.n_particle,
                                      .point = moved,
                                      .n_line = view.n_contact,
@@ -288,7 +309,7 @@ static void check_counts(const struct artifact *artifact, const int64_t *contact
 
 // Grains as they move, and the forces at their contacts. Positions are brought back
 // into the box for the picture only.
-static void motion_series(const struct artifact *artifact, struct series *series)
+static void motion_series(const struct artifact *artifact, struct frames *frames)
 {
     struct packing packing = artifact_get_packing(artifact);
     const int n = packing.n_particle;
@@ -319,7 +340,7 @@ static void motion_series(const struct artifact *artifact, struct series *series
                                            {"group", group, 1, "0: of none"},
                                            {0}};
         const struct vtu_array cells[] = {{"force", &force[first].x, 3, NULL}, {0}};
-        add_frame(series, time[s],
+        add_frame(frames, time[s],
                   &(struct vtu_grid){.n_point = n,
                                      .point = at,
                                      .n_line = drawn,
@@ -338,22 +359,19 @@ static void motion_series(const struct artifact *artifact, struct series *series
 // The .pvd comes last: whoever finds it finds all its frames.
 void write_series(const struct artifact *artifact, const char *prefix, int n_frame)
 {
-    struct series series = {.prefix = prefix};
+    struct frames frames = {.prefix = prefix};
     const char *schema = artifact->schema->name;
     if (!strcmp(schema, "drying"))
-        drying_series(artifact, &series, n_frame);
+        drying_series(artifact, &frames, n_frame);
     else if (!strcmp(schema, "forces"))
-        forces_series(artifact, &series, n_frame);
+        forces_series(artifact, &frames, n_frame);
     else if (!strcmp(schema, "response"))
-        response_series(artifact, &series);
+        response_series(artifact, &frames);
     else if (!strcmp(schema, "motion"))
-        motion_series(artifact, &series);
+        motion_series(artifact, &frames);
     else
         die(STATUS_BAD_DATA,
             "%s: nothing changes over time in a %s; ParaView opens it as it is",
             input_name(artifact->path), schema);
-    char path[4096];
-    snprintf(path, sizeof path, "%s.pvd", prefix);
-    write_pvd(path, series.frame, series.count);
-    free(series.frame);
+    end_frames(&frames);
 }

@@ -88,4 +88,23 @@ with scratch() as folder:
     dry = grid_of(vtkXMLUnstructuredGridReader(), at("drying-0010.vtu"))
     total = lambda grid: vtk_to_numpy(grid.GetCellData().GetArray("saturation")).sum()
     ok(total(full) == 560 and total(dry) == 0, "drying: from 560 full throats to none")
+
+    # Rings around contacts of irregular grains: with what is in throats they make the saturation.
+    scene = ["method=radius_expansion", "count=60", "sizes.distribution=normal", "sizes.spread=0.2"]
+    run("pack", "-q", *[f"--set={entry}" for entry in scene], "-o", at("grains.hdf"))
+    run("tessellate", "-q", "--set=throat_volume=void", "--set=throat_radius=entry", at("grains.hdf"), "-o", at("pores.hdf"))
+    run("dry", "-q", "--set=rings=isolated", at("pores.hdf"), "-o", at("ringed.hdf"))
+    run("inspect", "--vtk", at("ringed"), "--frames=4", at("ringed.hdf"))
+    times = [float(d.get("timestep")) for d in xml.parse(at("ringed-rings.pvd")).iter("DataSet")]
+    with h5py.File(at("ringed.hdf")) as ringed:
+        step = [np.abs(ringed["history/time"][:] - time).argmin() for time in times]
+        all_throats = ringed["throats/volume"][:][ringed["throats/kind"][:] == 0].sum()
+        wanted = ringed["history/ring_saturation"][:][step] * all_throats
+        pairs = {tuple(pair) for pair in ringed["faces/particles"][:][ringed["rings/face"][:]]}
+    grids = [grid_of(vtkXMLUnstructuredGridReader(), at(f"ringed-rings-000{k}.vtu")) for k in range(4)]
+    sums = [vtk_to_numpy(grid.GetCellData().GetArray("volume")).sum() for grid in grids]
+    ok(wanted.max() > 0 and np.allclose(sums, wanted, rtol=1e-5, atol=1e-9 * all_throats),
+       "rings: their volumes are those of the drying's history", (sums, wanted))
+    drawn = vtk_to_numpy(grids[0].GetCells().GetConnectivityArray()).reshape(-1, 2)
+    ok({tuple(pair) for pair in drawn} == pairs, "rings: lines between the grains of each ring")
 done()

@@ -11,7 +11,7 @@
 #include "artifacts/schema.h"
 #include "basics/file.h"
 #include "geometry/packing.h"
-#include "network/drying_record.h"
+#include "network/ring_record.h"
 #include "network/network.h"
 #include "parameters/stage.h"
 
@@ -112,6 +112,11 @@ struct network artifact_get_periodic_network(const struct artifact *artifact);
 // What happened in a drying. A foreign one may have no step. The caller frees it with
 // drying_record_free.
 struct drying_record artifact_get_drying(const struct artifact *artifact);
+
+// Whether a drying has rings, and what happened to them. It must have some. The caller
+// frees them with ring_record_free.
+bool artifact_has_rings(const struct artifact *artifact);
+struct ring_record artifact_get_rings(const struct artifact *artifact);
 
 // ---- writing ------------------------------------------------------------------------
 

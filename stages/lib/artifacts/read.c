@@ -529,3 +529,24 @@ struct drying_record artifact_get_drying(const struct artifact *artifact)
     record.throat_saturation = artifact_get(artifact, "/changes/saturation", NULL);
     return record;
 }
+
+bool artifact_has_rings(const struct artifact *artifact)
+{
+    return artifact_has_dataset(artifact, "/rings/throat") &&
+           artifact_has_dataset(artifact, "/ring_changes/offset");
+}
+
+struct ring_record artifact_get_rings(const struct artifact *artifact)
+{
+    struct ring_record rings = {0};
+    rings.face = artifact_get(artifact, "/rings/face", &rings.n);
+    rings.separation = artifact_get(artifact, "/rings/separation", NULL);
+    rings.offset = artifact_get(artifact, "/rings/offset", NULL);
+    rings.throat = artifact_get(artifact, "/rings/throat", NULL);
+    rings.volume = artifact_get(artifact, "/rings/volume", NULL);
+    rings.changes.offset = artifact_get(artifact, "/ring_changes/offset", NULL);
+    rings.changes.throat = artifact_get(artifact, "/ring_changes/node", NULL);
+    rings.changes.throat_saturation =
+        artifact_get(artifact, "/ring_changes/saturation", NULL);
+    return rings;
+}
