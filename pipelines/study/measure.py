@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Numbers out of artifacts: [ARTIFACT:]PATH as study.json has them."""
+import fcntl
 import json
 import os
 import re
@@ -64,11 +65,23 @@ def measured(path, measures):
     return [None if value is None else value * measure.scale for value, measure in zip(found, measures)]
 
 
+def being_made(path):
+    """Whether another makes the file at PATH, and so holds the lock of its key (tools/memo)."""
+    try:
+        with open(f"{path}.key", "rb") as key:
+            fcntl.flock(key, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:  # no key, or a file system without locks
+        pass
+    return False
+
+
 def why(folder, path):
     """What the stage said that failed to make PATH; "" where nothing did."""
     note = os.path.join(folder, f"{path}.said")
-    if not os.path.exists(note):
+    if not os.path.exists(note) or being_made(os.path.join(folder, path)):
         return ""
     with open(note, encoding="utf-8", errors="replace") as file:
         lines = [line.strip() for line in file if line.strip()]
-    return lines[-1] if lines else "failed without a word"
+    return lines[-1] if lines else "was interrupted"

@@ -3,6 +3,7 @@
 """Studies as data: runs that share what they have in common, tables and statistics as numpy and crackstats
 have them, what fails, and bad input."""
 import csv
+import fcntl
 import json
 import os
 import shutil
@@ -170,6 +171,13 @@ os.remove(at("runs/small", lost))
 fine, counts, *_ = study("table", "small.json")
 ok(fine and not counts and table("small")[0]["status"] == "not yet" and table("small")[1]["status"] == "done",
    "tables of what is there", table("small")[0])
+write(os.path.join("runs/small", lost + ".said"), "")
+with open(at("runs/small", lost + ".key"), "ab") as key:
+    fcntl.flock(key, fcntl.LOCK_EX)
+    study("table", "small.json")
+    ok(table("small")[0]["status"] == "not yet", "what is being made is not yet there", table("small")[0])
+study("table", "small.json")
+ok(table("small")[0]["why"] == "was interrupted", "what was killed half-way was interrupted", table("small")[0])
 
 # ---- as rules of Makeflow ----------------------------------------------------------------------------
 
