@@ -46,7 +46,11 @@ enum status drainage_begin(struct drainage *drainage, const struct capillarity *
     open_to_the_air(drainage, 2 * OPEN_AIR * mean_radius(packing));
     drainage->begin =
         liquid_volume(&drainage->liquid, drainage->first, drainage->first_radius, NULL);
-    return STATUS_OK;
+    if (drainage->begin > 0) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA,
+                  "no pore holds liquid: from above gas reaches %d of its %d pores "
+                  "through throats of half a mean diameter: pack the grains closer",
+                  drainage->n_gas, drainage->liquid.n);
 }
 
 void drainage_free(struct drainage *drainage)
@@ -186,6 +190,12 @@ bool has_evaporated(const struct drainage *drainage)
 
 // ---- history ------------------------------------------------------------------------
 
+double least_cycles(const struct capillarity *how)
+{
+    const double round = (double)how->round;
+    return how->control == CONTROL_EVAPORATION ? round * (double)how->rounds : round;
+}
+
 struct drainage_history drainage_history_init(int n_time)
 {
     return (struct drainage_history){.suction = NEW_ARRAY(double, n_time),
@@ -218,6 +228,7 @@ double note_drainage(const struct drainage *drainage, const struct dem *dem, int
     const double liquid = liquid_volume(&drainage->liquid, at, radius, &wet);
     const struct vector edge = drainage->liquid.edge;
     const struct dem_census census = dem_census(dem);
+    history->first_liquid = drainage->begin;
     history->suction[row] = suction;
     history->liquid[row] = liquid;
     history->drained[row] = drainage->drained;

@@ -31,6 +31,7 @@ struct capillarity {
 
 // What each row of the load ends with; it owns its arrays (n_time).
 struct drainage_history {
+    double first_liquid;     // m3, before the first row
     double *suction;         // Pa
     double *liquid;          // m3 in pores
     double *drained;         // m3 that pores held when gas entered them, so far
@@ -38,6 +39,9 @@ struct drainage_history {
                              // the box
     int32_t *gas_pores, *distorted; // pores with gas; of them, by mark_distorted
 };
+
+// Time steps of a step of the load in which gas enters, at least.
+double least_cycles(const struct capillarity *how);
 
 struct drainage_history drainage_history_init(int n_time);
 void drainage_history_free(struct drainage_history *history);
@@ -59,7 +63,8 @@ struct drainage {
 };
 
 // The pores of PACKING, full but where gas reaches from above through throats of half a
-// mean diameter. STATUS_BAD_DATA as pore_liquid_init.
+// mean diameter. STATUS_BAD_DATA as pore_liquid_init, and if no pore is left with
+// liquid.
 enum status drainage_begin(struct drainage *drainage, const struct capillarity *how,
                            const struct packing *packing, struct reason *reason);
 void drainage_free(struct drainage *drainage);

@@ -314,7 +314,8 @@ static void write_response(const struct packing *packing, const struct load *loa
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
-// Half of the loads, because a few that are slow to settle change little.
+// Half of the loads, because a few that are slow to settle change little. Equilibria
+// are advised only to a replay that they can make.
 static void warn_if_restless(const struct load *load,
                              const struct replay_settings *settings,
                              const struct response *response)
@@ -326,8 +327,11 @@ static void warn_if_restless(const struct load *load,
     else if (response->n_unsettled > load->n_time / 2)
         report("%d of %d steps of the load did not come to rest, to an unbalanced "
                "ratio of %g: let steps last longer by cycles, tolerance and "
-               "most_cycles, or use engine=quasi-static, which finds equilibria",
-               response->n_unsettled, load->n_time, ratio_at_rest(settings));
+               "most_cycles%s",
+               response->n_unsettled, load->n_time, ratio_at_rest(settings),
+               load->shrinks || load->drains || settings->liquid.volume > 0
+                   ? ""
+                   : ", or use engine=quasi-static, which finds equilibria");
 }
 
 // Grains that have moved by more than the largest radius, at any snapshot, and the one
@@ -392,6 +396,25 @@ static void warn_if_loose(const struct packing *packing,
                "force and moment)");
 }
 
+// Where the largest suction was too small for gas to enter anything, or for the share
+// that is to evaporate. A round takes its portion to half of it.
+static void warn_if_wet(const struct load *load, const struct replay_settings *settings,
+                        const struct response *response)
+{
+    const struct capillarity *how = &settings->capillarity;
+    if (!load->drains || load->n_time == 0) return;
+    const double gone =
+        response->drainage.drained[load->n_time - 1] / response->drainage.first_liquid;
+    const bool dries = how->control == CONTROL_EVAPORATION;
+    const double wanted =
+        dries ? how->last_drained * (1 - 1.0 / (double)(how->steps * how->rounds)) : 0;
+    if (gone > wanted || (dries && gone == wanted)) return;
+    report(
+        "gas has taken %.3g of the liquid%s: capillary.suction=%g Pa is too small for "
+        "the throats, which need 2 gamma cos(theta)/r",
+        gone, dries ? ", less than capillary.evaporated" : "", how->suction);
+}
+
 static void choose_bridges(struct replay_parameters *parameters,
                            const struct artifact *input, bool quiet)
 {
@@ -402,13 +425,16 @@ static void choose_bridges(struct replay_parameters *parameters,
 }
 
 // Only the number of grains and whether there are bonds decide on the engine; the input
-// of a body that only shrinks has no loads.
+// of a body that only shrinks or drains has no loads.
 static int estimate(const struct invocation *invocation,
                     struct replay_parameters *parameters)
 {
     struct replay_settings *settings = &parameters->settings;
     struct body_size body = input_size(invocation, 0);
-    if (!(body.loads > 0) && settings->shrinkage.strain > 0)
+    const struct capillarity *drains = &settings->capillarity;
+    if (drains->suction > 0)
+        body.loads = (double)drains->steps;
+    else if (!(body.loads > 0) && settings->shrinkage.strain > 0)
         body.loads = (double)parameters->shrinkage_steps;
     if (!(body.loads > 0))
         die(STATUS_USAGE, "--estimate: name forces as input, or a number of grains and "
@@ -416,13 +442,15 @@ static int estimate(const struct invocation *invocation,
     choose_engine(parameters,
                   &(struct packing){.n_particle = (int)body.grains, .n_bond = 1},
                   settings);
-    const double cycles = (double)settings->cycles;
+    const double ramp = (double)settings->ramp, cycles = (double)settings->cycles;
+    const double most = (double)settings->most_cycles;
     const struct cost cost =
         settings->engine == ENGINE_QUASI_STATIC
             ? cost_of_equilibria(&body, settings->material.friction > 0)
-            : cost_of_cycles(
-                  &body, (double)settings->ramp, cycles,
-                  isnan(settings->tolerance) ? cycles : (double)settings->most_cycles);
+        : drains->suction > 0
+            ? cost_of_drainage(&body, ramp, cycles + least_cycles(drains), most)
+            : cost_of_cycles(&body, ramp, cycles,
+                             isnan(settings->tolerance) ? cycles : most);
     print_estimate(&cost, &body);
     return STATUS_OK;
 }
@@ -458,6 +486,7 @@ int main(int argc, char **argv)
     note_bond_numbers(&weight, largest_force(&load));
     if (!invocation.quiet) warn_if_restless(&load, settings, &response);
     if (!invocation.quiet) warn_if_loose(&packing, settings, &response);
+    if (!invocation.quiet) warn_if_wet(&load, settings, &response);
     if (!invocation.quiet) warn_of_weight(&weight, &response, &packing);
     write_response(&packing, &load, settings, &response, &weight, &invocation, input,
                    digest);

@@ -368,6 +368,19 @@ static enum status settle(struct run *run, int64_t first, double tolerance,
     }
 }
 
+// Where the user wants no step that has not come to rest.
+static enum status refuse_unsettled(const struct run *run, struct reason *reason)
+{
+    const struct replay_settings *settings = run->settings;
+    if (isnan(settings->tolerance) || settings->unsettled == UNSETTLED_GOES_ON)
+        return STATUS_OK;
+    if (unbalanced_ratio(run) < settings->tolerance) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "unbalanced ratio %g is not below %g after %lld cycles",
+                  dem_unbalanced_ratio(dem_of(run)), settings->tolerance,
+                  (long long)settings->most_cycles);
+}
+
 // After the fixed cycles of a step: more until the body is at rest, if a tolerance is
 // given.
 static enum status run_on(struct run *run, struct reason *reason)
@@ -379,12 +392,7 @@ static enum status run_on(struct run *run, struct reason *reason)
     const int64_t first = run->place.began + ramp(run) + settings->cycles;
     const enum status status =
         settle(run, first, settings->tolerance, settings->most_cycles, reason);
-    if (status || unbalanced_ratio(run) < settings->tolerance) return status;
-    if (settings->unsettled == UNSETTLED_GOES_ON) return STATUS_OK;
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "unbalanced ratio %g is not below %g after %lld cycles",
-                  dem_unbalanced_ratio(dem_of(run)), settings->tolerance,
-                  (long long)settings->most_cycles);
+    return status ? status : refuse_unsettled(run, reason);
 }
 
 // ---- drainage -----------------------------------------------------------------------
@@ -427,7 +435,7 @@ static enum status drain(struct run *run, struct reason *reason)
                            now - drainage->entered >= settings->most_cycles;
         const bool is_done = dries && has_evaporated(drainage);
         if (!(!is_done && enter_gas(drainage, dem_of(run)) > 0) && rests)
-            return STATUS_OK;
+            return refuse_unsettled(run, reason);
         drainage->round_began = now;
         apply_forces(run);
     }

@@ -64,7 +64,8 @@ struct taken_weight take_weight(const struct artifact *input,
                                 struct replay_settings *settings)
 {
     const double of_forces = gravity_of_forces(input);
-    struct taken_weight taken = {.gravity_of_liquid = of_forces,
+    struct taken_weight taken = {.has_forces = input,
+                                 .gravity_of_liquid = of_forces,
                                  .gravity =
                                      choose_gravity(parameters, packing, of_forces)};
     taken.liquid = load->n_time > 0 ? first_liquid(input, packing->n_particle) : NULL;
@@ -112,7 +113,7 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
     if (weight->gravity > 0 && of_liquid > 0 && weight->gravity != of_liquid)
         report("gravity = %g m/s2 for the grains, but %g for the liquid in the forces",
                weight->gravity, of_liquid);
-    if (weight->gravity > 0 && !(of_liquid > 0))
+    if (weight->gravity > 0 && !(of_liquid > 0) && weight->has_forces)
         report("the forces are without the weight of the liquid: "
                "force-protocol.gravity=%g adds it",
                weight->gravity);

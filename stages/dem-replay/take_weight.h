@@ -11,6 +11,7 @@
 
 // The weight that a replay is done with.
 struct taken_weight {
+    bool has_forces;             // or the load is a packing's own
     double gravity;              // m/s2; 0: left out
     double gravity_of_liquid;    // in the forces; 0: they have no weight of it
     struct vector *standing;     // (n_particle) N, before drying; NULL: none

@@ -73,6 +73,13 @@ ok(set(os.listdir(folder.name)) == before, "nothing is written")
 ranged = estimate("dem-replay", "--estimate=1000,100", *scene, *sets("tolerance=1e-3", "cycles=100", "most_cycles=10000"))
 exact = [estimate("dem-replay", "--estimate=1000,100", *scene, *sets(f"cycles={n}"))["seconds"] for n in (100, 10000)]
 ok(ranged["range"] == exact, "until at rest: from the fewest cycles to the most", f"{ranged} {exact}")
+wet = ["-p", os.path.abspath("samples/craquelure-wet-40.json"), "-s", "capillary.steps=3"]
+call("pack", *wet[:2], *sets("upper=[4e-6,4e-6,4.68e-6]"), "-o", at("layer.h5"))
+said = estimate("dem-replay", "--estimate", *wet, at("layer.h5"))
+seconds, mebibytes = measured("dem-replay", *wet, at("layer.h5"), "-o", at("drained.h5"))
+low, high = said["range"]
+ok(said["loads"] == 3 and mebibytes / 2 < said["mebibytes"] < 2 * mebibytes and low / 6 < seconds < 6 * high,
+   "a packing that drains has the loads of capillary.steps", f"{said} {seconds} {mebibytes}")
 cost = {row["stage"]: row for row in json.loads(call("check", at("pack.h5"), "-o", "-")[1])["cost"]}
 ok(cost["tessellate"]["seconds"] == estimate("tessellate", "--estimate=400")["seconds"], "check says what stages say", cost)
 

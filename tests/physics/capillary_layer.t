@@ -156,4 +156,30 @@ with scratch() as folder:
     run("pack", "-q", "-p", at("layer.json"), "-s", f"counts=[{SIDE},{SIDE},1]", "-o", at("flat.h5"))
     ok(refused(65, *layer, "-s", "support=wall", at("flat.h5"), "-o", at("no.h5")),
        "a layer of one grain has no pore: refused")
+    with open(at("loose.txt"), "w") as file:
+        file.writelines(f"{i * 4e-6} {j * 4e-6} {k * 4e-6} 1e-6\n"
+                        for i in range(3) for j in range(3) for k in range(3))
+    run("pack", "-q", "-s", "method=import", "-s", "check=none", at("loose.txt"), "-o", at("loose.h5"))
+    ok(refused(65, *layer, "-s", "bond.by=none", at("loose.h5"), "-o", at("no.h5")),
+       "grains so far apart that gas is everywhere: refused")
+
+    # What a run says.
+    def said(*settings):
+        sets = [word for setting in settings for word in ("-s", setting)]
+        process = subprocess.run([f"{BIN}/{layer[0]}", *layer[1:], *sets, *end],
+                                 capture_output=True, text=True)
+        return process.returncode, process.stderr
+
+    ok("2 gamma cos(theta)/r" in said()[1], "a suction below that of the throats: told")
+    dries = ["capillary.control=evaporation", "capillary.evaporated=0.5", "capillary.rounds=4"]
+    ok("less than capillary.evaporated" in said(*dries)[1],
+       "also where it is too small for what is to evaporate")
+    ok("is too small" not in said(*dries, f"capillary.suction={2 * ENTRY}")[1] +
+       said(f"capillary.suction={2.04 * ENTRY}")[1], "but not where it is enough")
+    hasty = ["tolerance=1e-15", "cycles=16", "most_cycles=16"]
+    ok("did not come to rest" in said(*hasty)[1] and "quasi-static" not in said(*hasty)[1],
+       "steps that do not rest: no advice to use equilibria, which do not drain")
+    ok(said(*hasty, "unsettled=stop")[0] == 3, "unsettled=stop ends with status 3")
+    ok("force-protocol" not in said("gravity=9.81")[1],
+       "with gravity: no advice about forces that there are none of")
 done()

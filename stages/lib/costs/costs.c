@@ -132,6 +132,17 @@ struct cost cost_of_cycles(const struct body_size *body, double ramp, double cyc
                   mebibytes);
 }
 
+// Menisci and pores take as long as contacts, or three times where these are few.
+struct cost cost_of_drainage(const struct body_size *body, double ramp, double least,
+                             double rest)
+{
+    struct cost cost = cost_of_cycles(body, ramp, least, least + rest);
+    const double steps = 2 * (cost.seconds - START_SECONDS);
+    return within(steps, steps / (cost.least - START_SECONDS),
+                  2 * 2 * (cost.most - START_SECONDS) / steps,
+                  cost.mebibytes - START_MEBIBYTES);
+}
+
 struct cost cost_of_equilibria(const struct body_size *body, bool friction)
 {
     const double work = body->grains * body->grains * body->loads;

@@ -57,6 +57,10 @@ struct cost cost_of_forces(const struct body_size *body);
 // at rest (MOST = CYCLES: exactly so many).
 struct cost cost_of_cycles(const struct body_size *body, double ramp, double cycles,
                            double most);
+// A packing that drains: LEAST time steps each, in which gas enters, and up to REST
+// more.
+struct cost cost_of_drainage(const struct body_size *body, double ramp, double least,
+                             double rest);
 struct cost cost_of_equilibria(const struct body_size *body, bool friction);
 
 // SYSTEMS of pressures solved, one for each flow.
