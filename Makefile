@@ -33,7 +33,7 @@ unfit = $(strip $(word 2,$(value $1)) $(foreach sign,$(signs),$(findstring $(sig
 set_by_user = $(filter command environment,$(origin $1))
 check_name = $(if $(and $(set_by_user),$(unfit)),$(error $1=$(strip $(value $1)): make takes no blanks or signs \
 	in names of files; a link by another name will do))
-$(foreach name,BUILD RUNS SCENE IMPORT MONTE_CARLO_SCENE,$(call check_name,$(name)))
+$(foreach name,BUILD RUNS NAME SCENE IMPORT MONTE_CARLO_SCENE,$(call check_name,$(name)))
 # A word for the shell.
 quoted = '$(subst ','\'',$1)'
 

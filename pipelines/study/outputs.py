@@ -104,6 +104,14 @@ def notes(plan, folder):
         print(f"{len(paths)} times: {text}" if len(paths) > 1 else text, file=sys.stderr)
 
 
+def tell_empty(summary, rows):
+    """Names what is to be measured and is in none of the runs that are done: misspelt, or nothing to measure."""
+    ready = [r for r in rows if r["status"] == "done"]
+    for name in summary["points"][0]["measures"] if ready else []:
+        if all(r[name] is None for r in ready):
+            print(f"measure {name}: none of the {len(ready)} done runs has such a number", file=sys.stderr)
+
+
 def show(rows, folder, written):
     """The summary, what failed, and where everything is."""
     with open(os.path.join(folder, "summary.md"), encoding="utf-8") as file:

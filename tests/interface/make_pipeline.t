@@ -294,7 +294,7 @@ for name in 'a b' "it's" 'a;touch PWN;' 'a#b' 'a(b' 'a)b' 'a:b' 'a=b' 'a\b' 'a%b
     refused SCENE "samples/$name.json" -n
     refused IMPORT "$name.txt" -n SCENE=$scene
 done
-for variable in SCENE IMPORT RUNS BUILD; do
+for variable in SCENE IMPORT RUNS BUILD NAME; do
     refused $variable 'a;touch PWN;' -n SCENE=$scene
     refused $variable 'a;touch PWN;' -q SCENE=$scene
     refused $variable 'a;touch PWN;' -B SCENE=$scene

@@ -146,6 +146,7 @@ for one in found:
 ok(fine and [[r["stress.last"], r["rings.mean"], r["nothing"]] for r in found]
    == [[one["stress"][-1], np.mean(one["rings"]), None] for one in alone] and os.path.exists(at("runs/rings/figure.svg")),
    "lists are measured too, and what is nowhere is left out of the picture", (wrong, found))
+ok("measure nothing: none of the 2 done runs has such a number" in wrong and wrong.count("measure ") == 1, "and is told", wrong)
 
 # ---- a run that fails ---------------------------------------------------------------------------------
 
