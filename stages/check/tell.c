@@ -82,6 +82,14 @@ static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
     }
 }
 
+// VALUE to two digits, which %.12g then writes without an exponent.
+static double two_digits(const json_t *value)
+{
+    char text[32];
+    snprintf(text, sizeof text, "%.1e", json_number_value(value));
+    return atof(text);
+}
+
 // The cost of each stage by the number of grains (suggest.c).
 static void tell_suggested(const struct checked *checked, FILE *out)
 {
@@ -97,10 +105,10 @@ static void tell_suggested(const struct checked *checked, FILE *out)
     size_t k;
     json_t *row;
     json_array_foreach(cost, k, row)
-        fprintf(out, "%-10s %s: %.2g s, %.2g MB\n", k ? "" : "cost",
+        fprintf(out, "%-10s %s: %.12g s, %.12g MB\n", k ? "" : "cost",
                 json_string_value(json_object_get(row, "stage")),
-                json_number_value(json_object_get(row, "seconds")),
-                json_number_value(json_object_get(row, "megabytes")));
+                two_digits(json_object_get(row, "seconds")),
+                two_digits(json_object_get(row, "megabytes")));
     json_decref(cost);
 }
 

@@ -4,6 +4,7 @@
 are those of the processor (widely: other programs run), and a study plans by them."""
 import json
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -82,6 +83,11 @@ ok(said["loads"] == 3 and mebibytes / 2 < said["mebibytes"] < 2 * mebibytes and 
    "a packing that drains has the loads of capillary.steps", f"{said} {seconds} {mebibytes}")
 cost = {row["stage"]: row for row in json.loads(call("check", at("pack.h5"), "-o", "-")[1])["cost"]}
 ok(cost["tessellate"]["seconds"] == estimate("tessellate", "--estimate=400")["seconds"], "check says what stages say", cost)
+hasty, restless = (cost[f"dem-replay (100 loads of {n} cycles)"]["seconds"] for n in (100, 10000))
+ok(restless > 10 * hasty, "also where no load comes to rest before the default of most_cycles", f"{hasty} {restless}")
+told = call("check", at("pack.h5"))[1]
+rows = re.findall(r"^(?:cost)? +(\S.*): (\S+) s, (\S+) MB$", told, re.M)
+ok(len(rows) == len(cost) and not any("e" in number for row in rows for number in row[1:]), "and writes seconds and MB without exponents", told)
 
 # ---- a study that has no run yet --------------------------------------------------------------------
 
