@@ -192,13 +192,15 @@ static enum status check_overlap(const struct run *run, struct reason *reason)
         snprintf(what, sizeof what, "wall %s, pushed with %.4g N, and a grain overlap",
                  run->scene->wall_more[census.deepest_wall].name,
                  norm(dem_wall_state(dem_of(run), census.deepest_wall).force));
-    return refuse(
-        reason, STATUS_NOT_CONVERGED,
-        "at %.4g s %s by %.3g mean radii, above largest_overlap=%g, under a "
-        "mean pressure of %.4g Pa: stiffer grains, or walls that close in less",
-        dem_time(dem_of(run)), what,
-        wall ? census.wall_overlap : census.largest_overlap, most,
-        mean_pressure(run, &census));
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "at %.4g s %s by %.3g mean radii, above largest_overlap=%g, under a "
+                  "mean pressure of %.4g Pa: stiffer grains, %s",
+                  dem_time(dem_of(run)), what,
+                  wall ? census.wall_overlap : census.largest_overlap, most,
+                  mean_pressure(run, &census),
+                  run->parameters->adhesion > 0
+                      ? "less adhesion, or walls that close in less"
+                      : "or walls that close in less");
 }
 
 static enum status advance(struct run *run, struct reason *reason)

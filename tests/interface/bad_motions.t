@@ -78,4 +78,6 @@ scene("a wall that crushes grains",
        "box": {"walls": ["-z"]}},
       r"packing: at \S+ s two grains overlap by \S+ mean radii, above largest_overlap=0\.5, under a mean "
       r"pressure of \S+ Pa: stiffer grains, or walls that close in less", UNSTABLE)
+scene("adhesion that crushes grains", {"adhesion": 1, "duration": 1e-5},
+      r"packing: at \S+ s two grains overlap by .* Pa: stiffer grains, less adhesion, or walls that close in less", UNSTABLE)
 done()
