@@ -6,6 +6,7 @@ import glob
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 
@@ -65,6 +66,19 @@ with scratch() as folder:
         ok("broken in tension" in svg and "broken in shear" in svg, f"{name}: a legend says which is which")
     ok(re.findall(r">dry</tspan>[^\n]*\n[^\n]*>broken: ([^<]*)<", drawn[0]) == counts,
        "the last panel of each limit is dry and has all cracks")
+
+# A layer without polygons: no map of when they opened, and gnuplot does not complain of an empty one.
+with scratch() as folder:
+    at = lambda *names: os.path.join(folder, *names)
+    run("pack", "-q", "--set", "method=cubic", "--set", "counts=[4,4,4]", "--set", "radius=1e-6", "-o", at("packing"))
+    run("dem-replay", "-q", "--set", "shrinkage.strain=1e-6", "--set", "shrinkage.steps=2", "--set", "most_cycles=200",
+        at("packing"), "-o", at("response"))
+    run("crackstats", "-q", "--set", "polygons=true", at("response"), "-o", at("cracks.json"))
+    drawn = subprocess.run(["pipelines/studies/craquelure/report", "polygons", at("response"), at("cracks.json"), at("none.png")],
+                           capture_output=True, text=True)
+    ok(drawn.returncode == 0 and drawn.stderr == "", "craquelure without polygons is drawn", drawn.stderr)
+    width, height = struct.unpack(">II", read(at("none.png"))[16:24])
+    ok((width, height) == (2 * 520 + 70, 520 + 30), "as two pictures in a row", (width, height))
 
 # ---- the scripts --------------------------------------------------------------------
 old = colours("#0a2a7a #ffc20e #e0b000")

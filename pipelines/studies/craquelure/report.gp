@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A layer from above. Variables: tables, the folder that pipelines/studies/craquelure/report makes; n views of
-# grains with titles between bars; wide and deep, the box in diameters; opened: whether the map of when cracks
-# opened comes beside them, of columns a step wide.
+# grains with titles between bars; wide and deep, the box in diameters; opened: 1 if the map of when cracks
+# opened comes beside them, of columns a step wide; 2 if it is empty.
 columns = opened ? 2 : (n < 2 ? 1 : 2)
-rows = (n + opened + columns - 1) / columns
+rows = (n + (opened ? 1 : 0) + columns - 1) / columns
 side = opened ? 520 : 340
 set terminal pngcairo background "#ffffff" font "Helvetica,11" size side * columns + (opened ? 70 : 0), (side + 30) * rows
 total = side * columns + (opened ? 70.0 : 0.0)
@@ -35,6 +35,12 @@ if (opened) {
     set colorbox user origin screen (2.0 * side + 4) / total, 0.25 size screen 16 / total, 0.5
     set cbtics 0.1 scale 0
     half = step / 2
-    plot tables . "/opened" using 1:2:(half):(half):3 with boxxyerror fillstyle solid noborder linecolor palette
+    if (opened == 1) {
+        plot tables . "/opened" using 1:2:(half):(half):3 with boxxyerror fillstyle solid noborder linecolor palette
+    } else {
+        set title "no cracks by the measure of damage"
+        unset colorbox
+        plot NaN notitle
+    }
 }
 unset multiplot
