@@ -12,6 +12,7 @@
 #include "balance.h"
 
 #include "basics/memory.h"
+#include "geometry/triangulation/insertion_order.h"
 #include "sparse/block_rows.h"
 #include "sparse/conjugate_gradients.h"
 
@@ -29,11 +30,12 @@ struct rotations {
 // Corners, a grain beside a throat each, some 33 of a grain, throat by throat.
 struct throats {
     int n_throat, n_grain, n_corner;
-    int most;            // corners of a throat
-    int *first;          // (n_throat+1) corners of each throat
-    int32_t *grain;      // (n_corner)
-    struct vector *arm;  // (n_corner) from the middle of the throat to the grain
-    struct vector *pull; // (n_corner) f0, then f
+    const struct vector *place; // (n_grain)
+    int most;                   // corners of a throat
+    int *first;                 // (n_throat+1) corners of each throat
+    int32_t *grain;             // (n_corner)
+    struct vector *arm;         // (n_corner) from the middle of the throat to the grain
+    struct vector *pull;        // (n_corner) f0, then f
     struct vector *now;  // (n_corner) the last result of balance; NULL: none is kept
     int *begin, *throat; // (n_grain+1) into THROAT (n_corner): throats of each grain
     bool *supported;     // (n_throat) a wall takes the rigid part: P is 1
@@ -273,17 +275,22 @@ static void add_throat(const struct throats *throats, int t, int row,
         const int grain = throats->grain[first + c];
         if (!throats->closed[grain]) continue;
         if (supported && c != row - first) continue;
-        add_projection(rotations, row - first, c, n, supported,
-                       block_rows_at(rows, grain));
+        double *block = block_rows_at(rows, grain);
+        if (block) add_projection(rotations, row - first, c, n, supported, block);
     }
 }
 
-// The matrix that takes multipliers to sum P m on each closed grain.
+// The matrix that takes multipliers to sum P m on each closed grain. Rows lie along a
+// space-filling curve: packings come in any order, and then each row would wait for
+// blocks and multipliers from everywhere.
 static struct block_rows assemble(const struct throats *throats)
 {
-    struct block_rows rows = block_rows_init(throats->n_grain);
+    const int n = throats->n_grain;
+    struct block_rows rows =
+        block_rows_init(n, n > 0 ? insertion_order(throats->place, n) : NULL);
     struct rotations *rotations = NEW_ARRAY(struct rotations, throats->most);
-    for (int i = 0; i < throats->n_grain; i++) {
+    for (int r = 0; r < n; r++) {
+        const int i = rows.order[r];
         if (throats->closed[i])
             for (int k = throats->begin[i]; k < throats->begin[i + 1]; k++)
                 add_throat(throats, throats->throat[k], corner_at(throats, i, k),
@@ -399,6 +406,7 @@ enum status find_balanced_patches(struct sectors *sectors, enum form form, bool 
     const int n_grain = sectors->network->packing.n_particle;
     struct throats throats = {.n_throat = n_throat,
                               .n_grain = n_grain,
+                              .place = sectors->network->packing.position,
                               .first = NEW_ARRAY(int, n_throat + 1),
                               .begin = NEW_ARRAY(int, n_grain + 1),
                               .supported = NEW_ARRAY(bool, n_throat),

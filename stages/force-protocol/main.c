@@ -490,6 +490,7 @@ int main(int argc, char **argv)
     struct pendular_rings rings = {0};
     struct reason reason;
     enum status status = sectors_find(&network, &sectors, &reason);
+    if (parameters.rings != RING_DRYING) sectors.spare = &network;
     if (!status)
         status =
             find_action(&sectors, &parameters, law.uniform,

@@ -377,12 +377,27 @@ enum status sectors_find(const struct network *network, struct sectors *sectors,
     return status;
 }
 
+static void free_faces(struct network *network)
+{
+    free(network->face_offset);
+    free(network->face_nodes);
+    free(network->face_particles);
+    free(network->face_image);
+    free(network->face_node_image);
+    network->n_face = 0;
+    network->face_offset = NULL;
+    network->face_nodes = NULL;
+    network->face_particles = NULL;
+    network->face_image = network->face_node_image = NULL;
+}
+
 void sectors_free_sides(struct sectors *sectors)
 {
     free(sectors->side);
     free(sectors->offset);
     sectors->side = NULL;
     sectors->offset = NULL;
+    if (sectors->spare) free_faces(sectors->spare);
 }
 
 void sectors_free(struct sectors *sectors)

@@ -23,6 +23,7 @@ struct sector {
 
 struct sectors {
     const struct network *network;
+    struct network *spare; // the same, if its faces may go with the sides; or NULL
     bool layer;
     struct side *side;     // what is known of them, by throats
     int64_t *offset;       // (n_throat+1) into SIDE
@@ -44,7 +45,8 @@ struct sectors {
 enum status sectors_find(const struct network *network, struct sectors *sectors,
                          struct reason *reason);
 void sectors_free(struct sectors *sectors);
-// Frees all but .surface early: sectors_at must not be called again.
+// Frees all but .surface early, and the faces of .spare: sectors_at must not be called
+// again.
 void sectors_free_sides(struct sectors *sectors);
 
 // The wedges of THROAT in wedges->wedge, until asked again; returns how many.

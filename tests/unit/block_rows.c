@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sparse rows of 3x3 blocks against the same matrix in full: products, and the inverses
-// of diagonal blocks, of which some are empty and one is singular.
+// Sparse rows of 3x3 blocks, filled in any order, against the same symmetric matrix in
+// full: products, and the inverses of diagonal blocks, of which some are empty and one
+// is singular.
 #include "sparse/block_rows.h"
 #include "../random.h"
 #include "../test.h"
@@ -13,35 +14,63 @@ enum { N = 40, SIZE = 3 * N, EMPTY = 7, SINGULAR = 11 };
 
 static double full[SIZE][SIZE];
 
-// Of each row some columns, added to more than once; the diagonal dominates.
-static struct block_rows filled(uint64_t *seed)
+// Adds MORE to the block of row I and column J, and its transpose to that across.
+static void add_to_full(int i, int j, const double more[9])
+{
+    for (int k = 0; k < 9; k++) {
+        full[3 * i + k / 3][3 * j + k % 3] += more[k];
+        if (i != j) full[3 * j + k % 3][3 * i + k / 3] += more[k];
+    }
+}
+
+// Some columns of each row; the diagonal dominates.
+static void draw_full(uint64_t *seed)
 {
     memset(full, 0, sizeof full);
-    struct block_rows rows = block_rows_init(N);
-    for (int i = 0; i < N; i++) {
-        for (int entry = 0; entry < 12 && i != EMPTY; entry++) {
-            const int j = entry < 2 ? i : (int)(next_random(seed) * N);
-            if (i == SINGULAR && j == i && entry != 0) continue;
+    for (int i = 0; i < N; i++)
+        for (int entry = 0; entry < 6 && i != EMPTY; entry++) {
+            const int j = entry == 0 ? i : (int)(next_random(seed) * N);
+            if (j == EMPTY || (i == SINGULAR && j == i && entry != 0)) continue;
+            double more[9];
+            for (int k = 0; k < 9; k++)
+                more[k] = i == SINGULAR && j == i
+                              ? 6 * (k == 0 || k == 4)
+                              : next_random(seed) + 20 * (i == j && k % 4 == 0);
+            add_to_full(i, j, more);
+        }
+}
+
+static bool is_in_full(int i, int j)
+{
+    for (int k = 0; k < 9; k++)
+        if (full[3 * i + k / 3][3 * j + k % 3] != 0) return true;
+    return false;
+}
+
+// Each block in two halves; columns from the right in every second row.
+static struct block_rows filled(int32_t *order)
+{
+    struct block_rows rows = block_rows_init(N, order);
+    for (int r = 0; r < N; r++) {
+        const int i = rows.order[r];
+        for (int turn = 0; turn < 2 * N; turn++) {
+            const int j = r % 2 ? N - 1 - turn % N : turn % N;
+            if (!is_in_full(i, j)) continue;
             double *block = block_rows_at(&rows, j);
-            for (int k = 0; k < 9; k++) {
-                const bool is_plane = i == SINGULAR && j == i;
-                const double more =
-                    is_plane ? 6 * (k == 0 || k == 4)
-                             : next_random(seed) + 20 * (i == j && k % 4 == 0);
-                block[k] += more;
-                full[3 * i + k / 3][3 * j + k % 3] += more;
-            }
+            assert_int_equal(block == NULL, rows.rank[j] < r);
+            for (int k = 0; k < 9 && block; k++)
+                block[k] += 0.5 * full[3 * i + k / 3][3 * j + k % 3];
         }
         block_rows_end_row(&rows);
     }
     return rows;
 }
 
-static void as_in_full(void **state)
+static void check(bool in_order)
 {
-    (void)state;
     uint64_t seed = 5;
-    struct block_rows rows = filled(&seed);
+    draw_full(&seed);
+    struct block_rows rows = filled(in_order ? NULL : shuffled(N, &seed));
     double x[SIZE], image[SIZE], z[SIZE];
     for (int i = 0; i < SIZE; i++)
         x[i] = next_random(&seed) - 0.5;
@@ -69,6 +98,13 @@ static void as_in_full(void **state)
                 assert_true(fabs(back - x[at]) <= 1e-13);
         }
     block_rows_free(&rows);
+}
+
+static void as_in_full(void **state)
+{
+    (void)state;
+    check(true);
+    check(false);
 }
 
 int main(void)
