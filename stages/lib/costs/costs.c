@@ -106,10 +106,10 @@ struct cost cost_of_forces(const struct body_size *body)
 {
     static const double packing = 3; // MiB: chunks, and what deflate needs
     const double forces = body->grains * body->loads;
-    const double balance = 3.6e-4 * body->throats;
-    const double reading = 1.6e-4 * body->throats + 20 * body->changes / MEBIBYTE;
+    const double balance = 3e-4 * body->throats;
+    const double reading = 1.4e-4 * body->throats + 20 * body->changes / MEBIBYTE;
     const double sum =
-        2.4e-4 * body->throats + (12 * body->changes + band_bytes(body)) / MEBIBYTE;
+        2.2e-4 * body->throats + (12 * body->changes + band_bytes(body)) / MEBIBYTE;
     return cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
                    packing + fmax(balance, fmax(reading, sum)));
 }
