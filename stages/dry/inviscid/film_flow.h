@@ -13,16 +13,20 @@
 
 #include <stdbool.h>
 
+struct film_factor; // film_balance.h
+
 // The arrays belong to the caller. Units as in conductance_matrix.h: levels are
 // potentials; what is taken is a flow, 0 or more.
 struct film_flow {
     const struct conductance_matrix *matrix; // of all n sites
+    const int *place;                        // (n) ascending: what names a site
     const double *taken, *least;             // (n)
-    bool *held;                // (n) the level is the least; first a guess, in which
-                               // each connected part of the network has one such site
-    struct compensated *level; // (n) first a guess where not held
-    double *surplus;           // (n) 0 where not held
-    int rounds, iterations;    // added to
+    struct film_factor *factor; // of earlier flows, on some of the same places
+    bool *held;                 // (n) the level is the least; first a guess, in which
+                                // each connected part of the network has one such site
+    struct compensated *level;  // (n) first a guess where not held
+    double *surplus;            // (n) 0 where not held
+    int rounds, iterations;     // added to
 };
 
 // Finds HELD, LEVEL and SURPLUS. What does not balance at sites that are not held is

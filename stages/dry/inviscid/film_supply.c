@@ -15,6 +15,7 @@
 #include "film_supply.h"
 
 #include "basics/memory.h"
+#include "film_balance.h"
 #include "film_flow.h"
 #include "film_network.h"
 
@@ -22,7 +23,7 @@
 #include <stdlib.h>
 
 // Flows are found to this part of the drying rate.
-static const double TOLERANCE = 1e-9;
+static const double TOLERANCE = 1e-6;
 // Between two solutions films draw at most so much more from the sources that are left.
 static const double MOST_STRAY = 2;
 
@@ -44,7 +45,9 @@ struct film_supply *film_supply_create(const struct emptying_times *times)
                              .reached = NEW_ARRAY(bool, network->n_node),
                              .floats = NEW_ARRAY(bool, network->n_throat),
                              .level = NEW_ARRAY(struct compensated, times->n_place),
+                             .is_known = NEW_ARRAY(bool, times->n_place),
                              .evaporates = NEW_ARRAY(double, times->n_place),
+                             .factor = film_factor_create(),
                              .scale = 1,
                              .is_due = true};
     for (int p = 0; p < times->n_place; p++)
@@ -62,7 +65,9 @@ void film_supply_free(struct film_supply *films)
     free(films->reached);
     free(films->floats);
     free(films->level);
+    free(films->is_known);
     free(films->evaporates);
+    film_factor_free(films->factor);
     free(films);
 }
 
@@ -138,6 +143,32 @@ static void hold_nearest(const struct film_network *network, int n_throat,
     free(cluster);
 }
 
+// Sites that were not there in the last solution begin with the mean level of those
+// around them, so that what is wrong is near them only. UNKNOWN (n) is changed. A site
+// that nothing known reaches keeps 0.
+static void guess_levels(const struct film_network *network, bool *unknown,
+                         struct compensated *level)
+{
+    const struct conductance_matrix *matrix = &network->matrix;
+    for (bool again = true; again;) {
+        again = false;
+        for (int i = 0; i < network->n_site; i++) {
+            if (!unknown[i]) continue;
+            double sum = 0, all = 0;
+            for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
+                const int j = matrix->column[k];
+                if (unknown[j]) continue;
+                sum += matrix->value[k] * compensated_value(level[j]);
+                all += matrix->value[k];
+            }
+            if (!(all > 0)) continue;
+            level[i] = (struct compensated){.value = sum / all};
+            unknown[i] = false;
+            again = true;
+        }
+    }
+}
+
 // A first guess from the last solution. The cluster of the largest least is always
 // held: no level is above it, as liquid goes down from sources that are held.
 static void pose(const struct emptying_times *times, const struct film_network *network,
@@ -145,6 +176,7 @@ static void pose(const struct emptying_times *times, const struct film_network *
 {
     const struct film_supply *films = times->films;
     const int n_throat = times->occupancy->network->n_throat;
+    bool *unknown = NEW_ARRAY(bool, network->n_site);
     for (int i = 0; i < network->n_site; i++) {
         const int place = network->place[i];
         taken[i] = films->evaporates[place];
@@ -154,8 +186,11 @@ static void pose(const struct emptying_times *times, const struct film_network *
         } else {
             flow->held[i] = !films->reached[place - n_throat];
         }
-        flow->level[i] = films->level[place];
+        unknown[i] = !films->is_known[place];
+        if (!unknown[i]) flow->level[i] = films->level[place];
     }
+    guess_levels(network, unknown, flow->level);
+    free(unknown);
     hold_nearest(network, n_throat, flow);
     hold_highest(network, n_throat, least, flow->held);
 }
@@ -228,6 +263,8 @@ void film_supply_find(struct emptying_times *times)
     const int n = network.n_site;
     double *taken = NEW_ARRAY(double, n), *least = NEW_ARRAY(double, n);
     struct film_flow flow = {.matrix = &network.matrix,
+                             .place = network.place,
+                             .factor = films->factor,
                              .taken = taken,
                              .least = least,
                              .held = NEW_ARRAY(bool, n),
@@ -237,7 +274,10 @@ void film_supply_find(struct emptying_times *times)
     if (n > 0)
         films->failed |=
             !film_flow_solve(&flow, TOLERANCE * vapour_rate(&times->occupancy->vapour));
+    for (int p = 0; p < times->n_place; p++)
+        films->is_known[p] = false;
     for (int i = 0; i < n; i++) {
+        films->is_known[network.place[i]] = true;
         films->level[network.place[i]] = flow.level[i];
         note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
                   flow.surplus[i]);
@@ -304,7 +344,7 @@ void film_supply_end_cluster(struct emptying_times *times, int cluster)
     films->own[cluster] = 1;
     films->drawn[cluster] = 0;
     films->floats[cluster] = false;
-    films->level[cluster] = (struct compensated){0};
+    films->is_known[cluster] = false;
     while (drawn > 0 && films->next_heir < films->n_heir) {
         const int heir = films->heir[films->next_heir++];
         if (times->occupancy->clusters.size[heir] == 0 || films->drawn[heir] > 0)

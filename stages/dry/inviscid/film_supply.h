@@ -21,14 +21,16 @@ struct film_supply {
     int n_heir, next_heir;
     int *heir; // (n_heir) clusters that float, those nearest to their least first
 
-    bool *reached;             // (n_node) films reach it: its rings keep their liquid
-    bool *floats;              // (n_throat) by cluster: films bring all it evaporates
-    struct compensated *level; // (n_place) cube of the menisci's radius, scaled
-    double *evaporates;        // (n_place) scaled, when last found; 0: no shares
-    bool is_due;               // reservoirs have changed so that flows must be found
-    double saturation;         // when last found
-    bool failed;               // they were not
-    int64_t solutions;         // so far
+    bool *reached;              // (n_node) films reach it: its rings keep their liquid
+    bool *floats;               // (n_throat) by cluster: films bring all it evaporates
+    struct compensated *level;  // (n_place) cube of the menisci's radius, scaled
+    bool *is_known;             // (n_place) the level is that of the last solution
+    double *evaporates;         // (n_place) scaled, when last found; 0: no shares
+    struct film_factor *factor; // kept from one solution to the next
+    bool is_due;                // reservoirs have changed so that flows must be found
+    double saturation;          // when last found
+    bool failed;                // they were not
+    int64_t solutions;          // so far
 };
 
 // For TIMES, whose occupancy has a film law. The caller frees it with film_supply_free;

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small systems have a Cholesky factor (sparse/cholesky.h) of the sites that are
+// not held. Larger ones are solved by conjugate gradients on all sites, in which those
+// that are held stay 0. In both the true residual, from differences of compensated
+// levels, decides when it is enough.
+//
+// The preconditioner is kept while sites are held and freed, and from one moment of
+// drying to the next, since to make one costs as much as some 40 iterations. With M the
+// approximate factor of the sites that were not held when it was made,
+//     z = M^-1 r                at those of them that are there and not held now,
+//         r / diagonal          at the others that are not held.
+// Both parts are symmetric and positive definite. It is made anew when it has cost more
+// iterations than a new one would.
+#include "film_balance.h"
+
+#include "basics/memory.h"
+#include "elimination/approximate_cholesky.h"
+#include "sparse/cholesky.h"
+#include "sparse/conjugate_gradients.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// Each correction reduces the residual so far at most.
+static const double REDUCTION = 1e-4;
+// Of the tolerance, what a correction aims at.
+static const double MARGIN = 0.3;
+// A new factor takes as long as so many iterations.
+static const double WORTH = 20;
+
+enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
+
+struct film_factor {
+    struct approximate_cholesky *approximate; // NULL: to be made
+    int n;
+    int *place;    // (n) of its rows, ascending
+    int *site;     // (n) the site there now; -1: none
+    double *b, *x; // (n)
+    double each;   // iterations in which a new one gained a decade; 0: unknown
+    double lost;   // iterations that it has cost beyond that
+};
+
+struct film_factor *film_factor_create(void)
+{
+    return NEW_ARRAY(struct film_factor, 1);
+}
+
+static void forget(struct film_factor *factor)
+{
+    approximate_cholesky_free(factor->approximate);
+    free(factor->place);
+    free(factor->site);
+    free(factor->b);
+    free(factor->x);
+    *factor = (struct film_factor){0};
+}
+
+void film_factor_free(struct film_factor *factor)
+{
+    if (!factor) return;
+    forget(factor);
+    free(factor);
+}
+
+// --- sites that are not held -------------------------------------------------------
+
+// The sites in another order: first those that are not held, N of them.
+struct free_sites {
+    int n;
+    int *site, *order; // (all) the site at each place, and the place of each site
+    struct conductance_matrix matrix; // (n)
+};
+
+static void number_free(const struct film_flow *flow, struct free_sites *sites)
+{
+    const int n_all = flow->matrix->n;
+    sites->n = 0;
+    for (int hold = 0; hold < 2; hold++)
+        for (int i = 0, n = sites->n; i < n_all; i++) {
+            if (flow->held[i] != hold) continue;
+            sites->order[i] = n;
+            sites->site[n++] = i;
+            if (!hold) sites->n = n;
+        }
+}
+
+// The rows of the sites that are not held, under their numbers.
+static struct free_sites free_sites_init(const struct film_flow *flow)
+{
+    const struct conductance_matrix *all = flow->matrix;
+    const size_t n_all = (size_t)all->n;
+    struct free_sites sites = {.site = NEW_ARRAY(int, n_all),
+                               .order = NEW_ARRAY(int, n_all)};
+    number_free(flow, &sites);
+    struct conductance_matrix *matrix = &sites.matrix;
+    *matrix =
+        (struct conductance_matrix){.n = sites.n,
+                                    .n_all = all->n,
+                                    .offset = NEW_ARRAY(int, n_all + 2),
+                                    .column = NEW_ARRAY(int, all->offset[all->n]),
+                                    .value = NEW_ARRAY(double, all->offset[all->n]),
+                                    .diagonal = NEW_ARRAY(double, n_all)};
+    for (int row = 0; row < sites.n; row++) {
+        const int i = sites.site[row];
+        int to = matrix->offset[row];
+        for (int k = all->offset[i]; k < all->offset[i + 1]; k++, to++) {
+            matrix->column[to] = sites.order[all->column[k]];
+            matrix->value[to] = all->value[k];
+        }
+        matrix->offset[row + 1] = to;
+        matrix->diagonal[row] = all->diagonal[i];
+    }
+    return sites;
+}
+
+static void free_sites_free(struct free_sites *sites)
+{
+    free(sites->site);
+    free(sites->order);
+    conductance_matrix_free(&sites->matrix);
+}
+
+// --- the residual ------------------------------------------------------------------
+
+// The sum of what does not balance, less what rounding of levels makes.
+static double imbalance(const struct film_flow *flow, const double *residual)
+{
+    double sum = 0, rounding = 0;
+    for (int i = 0; i < flow->matrix->n; i++) {
+        if (flow->held[i]) continue;
+        sum += fabs(residual[i]);
+        rounding += flow->matrix->diagonal[i] * compensated_value(flow->level[i]);
+    }
+    return sum - 1e-15 * rounding;
+}
+
+static void find_residual(const struct film_flow *flow, double *residual)
+{
+    conductance_matrix_residual(flow->matrix, NULL, flow->level, residual);
+    for (int i = 0; i < flow->matrix->n; i++)
+        residual[i] -= flow->taken[i];
+}
+
+// --- small systems -----------------------------------------------------------------
+
+static bool solve_directly(struct film_flow *flow, double tolerance, double *residual)
+{
+    struct free_sites sites = free_sites_init(flow);
+    struct cholesky *cholesky = NULL;
+    struct reason reason;
+    double *b = NEW_ARRAY(double, sites.n), *x = NEW_ARRAY(double, sites.n);
+    bool found = false,
+         able = cholesky_create(&sites.matrix, &cholesky, &reason) == STATUS_OK;
+    for (int most = MOST_CORRECTIONS; able && !found && most > 0; most--) {
+        for (int k = 0; k < sites.n; k++)
+            b[k] = residual[sites.site[k]];
+        able = cholesky_solve(cholesky, b, x);
+        for (int k = 0; able && k < sites.n; k++)
+            compensated_add(&flow->level[sites.site[k]], x[k]);
+        find_residual(flow, residual);
+        found = !(imbalance(flow, residual) > tolerance);
+    }
+    cholesky_free(cholesky);
+    free_sites_free(&sites);
+    free(b);
+    free(x);
+    return found;
+}
+
+// --- large systems -----------------------------------------------------------------
+
+static void make_factor(const struct film_flow *flow)
+{
+    struct film_factor *factor = flow->factor;
+    struct free_sites sites = free_sites_init(flow);
+    forget(factor);
+    factor->approximate = approximate_cholesky_create(&sites.matrix);
+    factor->n = sites.n;
+    factor->place = NEW_ARRAY(int, sites.n);
+    factor->site = NEW_ARRAY(int, sites.n);
+    factor->b = NEW_ARRAY(double, sites.n);
+    factor->x = NEW_ARRAY(double, sites.n);
+    for (int k = 0; k < sites.n; k++)
+        factor->place[k] = flow->place[sites.site[k]];
+    free_sites_free(&sites);
+}
+
+// Both lists of places ascend.
+static void find_sites(const struct film_flow *flow)
+{
+    struct film_factor *factor = flow->factor;
+    for (int k = 0, i = 0; k < factor->n; k++) {
+        while (i < flow->matrix->n && flow->place[i] < factor->place[k])
+            i++;
+        factor->site[k] =
+            i < flow->matrix->n && flow->place[i] == factor->place[k] ? i : -1;
+    }
+}
+
+static void multiply(void *context, const double *x, double *image)
+{
+    const struct film_flow *flow = context;
+    conductance_matrix_multiply(flow->matrix, x, image);
+    for (int i = 0; i < flow->matrix->n; i++)
+        if (flow->held[i]) image[i] = 0;
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    const struct film_flow *flow = context;
+    const struct film_factor *factor = flow->factor;
+    for (int i = 0; i < flow->matrix->n; i++)
+        z[i] = flow->held[i] ? 0 : residual[i] / flow->matrix->diagonal[i];
+    for (int k = 0; k < factor->n; k++)
+        factor->b[k] = factor->site[k] >= 0 ? residual[factor->site[k]] : 0;
+    approximate_cholesky_apply(factor->approximate, factor->b, factor->x);
+    for (int k = 0; k < factor->n; k++)
+        if (factor->site[k] >= 0 && !flow->held[factor->site[k]])
+            z[factor->site[k]] = factor->x[k];
+}
+
+static void note_cost(struct film_factor *factor, int iterations, double reduction)
+{
+    const double decades = -log10(reduction);
+    if (factor->each > 0)
+        factor->lost += iterations - factor->each * decades;
+    else
+        factor->each = fmax(1, iterations / decades);
+}
+
+static void correct(struct film_flow *flow, double reduction, const double *residual,
+                    double *work)
+{
+    const int n = flow->matrix->n;
+    struct film_factor *factor = flow->factor;
+    if (!factor->approximate || factor->lost > WORTH) make_factor(flow);
+    find_sites(flow);
+    double *r = work, *x = work + n;
+    for (int i = 0; i < n; i++)
+        r[i] = flow->held[i] ? 0 : residual[i];
+    const double size = sqrt(sum_of_products(r, r, n));
+    for (int i = 0; i < n; i++)
+        r[i] /= size;
+    const struct linear_problem problem = {
+        n, flow, multiply, precondition, {work + 2 * n, work + 3 * n, work + 4 * n}};
+    const int iterations =
+        conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
+    note_cost(factor, iterations, reduction);
+    flow->iterations += iterations;
+    for (int i = 0; i < n; i++)
+        compensated_add(&flow->level[i], size * x[i]);
+}
+
+static bool solve_iteratively(struct film_flow *flow, double tolerance,
+                              double *residual)
+{
+    double *work = NEW_ARRAY(double, 5 * (size_t)flow->matrix->n);
+    double left = imbalance(flow, residual);
+    for (int most = MOST_CORRECTIONS; left > tolerance && most > 0; most--) {
+        correct(flow, fmax(REDUCTION, MARGIN * tolerance / left), residual, work);
+        find_residual(flow, residual);
+        left = imbalance(flow, residual);
+    }
+    free(work);
+    return left <= tolerance;
+}
+
+bool film_balance(struct film_flow *flow, double tolerance, double *residual)
+{
+    find_residual(flow, residual);
+    if (!(imbalance(flow, residual) > tolerance)) return true;
+    return flow->matrix->n <= DIRECT_MOST
+               ? solve_directly(flow, tolerance, residual)
+               : solve_iteratively(flow, tolerance, residual);
+}
