@@ -5,7 +5,7 @@
 // levels, decides when it is enough.
 //
 // The preconditioner is kept while sites are held and freed, and from one moment of
-// drying to the next, since to make one costs as much as some 40 iterations. With M the
+// drying to the next, since making one costs as much as some 40 iterations. With M the
 // approximate factor of the sites that were not held when it was made,
 //     z = M^-1 r                at those of them that are there and not held now,
 //         r / diagonal          at the others that are not held.
@@ -25,7 +25,8 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// A new factor takes as long as so many iterations.
+// It is made anew when it has cost so many iterations more than a new one would have:
+// half of what making one takes, as it becomes worse and worse.
 static const double WORTH = 20;
 
 enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };

@@ -20,6 +20,7 @@ void film_history_free(struct film_history *films)
     free(films->evaporation);
     free(films->depth);
     free(films->deepest);
+    free(films->depth_of_node);
     free(films);
 }
 
@@ -37,6 +38,15 @@ static double depth_of(const struct network *network, int node, unsigned open_wa
     return fmax(depth, 0);
 }
 
+// Once, as every step asks for those of all nodes that films reach.
+static void find_depths(struct film_history *films, const struct network *network,
+                        unsigned open_walls)
+{
+    films->depth_of_node = NEW_ARRAY(double, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        films->depth_of_node[i] = depth_of(network, i, open_walls);
+}
+
 // The arrays share one capacity: the first two grow by a copy of it.
 static void make_room(struct film_history *films)
 {
@@ -50,15 +60,16 @@ void film_history_add(struct film_history *films, const struct emptying_times *t
                       unsigned open_walls, double rate)
 {
     const struct occupancy *occupancy = times->occupancy;
+    if (times->films && !films->depth_of_node)
+        find_depths(films, occupancy->network, open_walls);
     int reached = 0;
     double sum = 0, deepest = 0;
     for (int k = 0; times->films && k < occupancy->n_wet; k++) {
         if (!times->films->reached[occupancy->wet[k]]) continue;
-        const double depth =
-            depth_of(occupancy->network, occupancy->wet[k], open_walls);
+        const double depth = films->depth_of_node[occupancy->wet[k]];
         reached++;
         sum += depth;
-        deepest = fmax(deepest, depth);
+        deepest = depth > deepest ? depth : deepest;
     }
     make_room(films);
     films->evaporation[films->n] = times->films ? times->films->evaporation * rate : 0;

@@ -8,13 +8,14 @@
 // Depths are below the nearest open wall, of nodes that films reach: their menisci's
 // radius is above 0.
 struct film_history {
-    int n, capacity;     // steps
-    double *evaporation; // (n) kg/s from nodes without liquid in throats, which films
-                         // bring there
-    double *depth;       // (n) m, mean; 0 without such nodes
-    double *deepest;     // (n) m
-    double evaporated;   // kg: integral of the evaporation, over all events
-    int64_t solutions;   // of the flow in films
+    int n, capacity;       // steps
+    double *evaporation;   // (n) kg/s from nodes without liquid in throats, which films
+                           // bring there
+    double *depth;         // (n) m, mean; 0 without such nodes
+    double *deepest;       // (n) m
+    double *depth_of_node; // (n_node) m; NULL before the first step
+    double evaporated;     // kg: integral of the evaporation, over all events
+    int64_t solutions;     // of the flow in films
 };
 
 // Empty. The caller frees it with film_history_free; NULL is allowed.
