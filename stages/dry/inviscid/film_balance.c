@@ -29,6 +29,10 @@ static const double MARGIN = 0.3;
 // half of what making one takes, as it becomes worse and worse.
 static const double WORTH = 20;
 
+// Beyond so many sites each set of held sites has a factor of its own: iterations run
+// out of the cache there, and save less than they cost.
+enum { KEPT_MOST = 10000 };
+
 enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
 
 struct film_factor {
@@ -257,6 +261,7 @@ static bool solve_iteratively(struct film_flow *flow, double tolerance,
 {
     double *work = NEW_ARRAY(double, 5 * (size_t)flow->matrix->n);
     double left = imbalance(flow, residual);
+    if (flow->matrix->n > KEPT_MOST) forget(flow->factor);
     for (int most = MOST_CORRECTIONS; left > tolerance && most > 0; most--) {
         correct(flow, fmax(REDUCTION, MARGIN * tolerance / left), residual, work);
         find_residual(flow, residual);
