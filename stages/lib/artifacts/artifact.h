@@ -11,8 +11,8 @@
 #include "artifacts/schema.h"
 #include "basics/file.h"
 #include "geometry/packing.h"
-#include "network/ring_record.h"
 #include "network/network.h"
+#include "network/ring_record.h"
 #include "parameters/stage.h"
 
 // One that is read lives from artifact_open to artifact_close, one that is written from
