@@ -107,6 +107,6 @@ ok(filecmp.cmp(at("t1"), at("t2"), shallow=False), "one thread and two give the 
 
 dried(at("packing"))
 refused = subprocess.run([f"{BIN}/force-protocol", "-q", *words(["rings.left=drying"]), at("drying")], capture_output=True, text=True, check=False)
-ok(refused.returncode == 65 and "rings.left=drying needs it: dry with rings=isolated or joined" in refused.stderr,
+ok(refused.returncode == 65 and "rings.left=drying needs it: dry with rings=isolated, joined or films" in refused.stderr,
    "a drying without rings is refused", refused.stderr)
 done()
