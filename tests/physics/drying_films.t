@@ -11,6 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
+from ring_books import stores
 from tap import BIN, WATER, done, ok, run, scratch
 
 R = 1e-6
@@ -38,23 +39,10 @@ def dry(path, *settings, name="drying", options=()):
     return h5py.File(at(name))
 
 
-def replayed(file, n, group, what):
-    """What is in each of N throats, or nodes' rings, at each step."""
-    row, state = np.ones(n), []
-    offset, index, value = (file[f"{group}/{name}"][:] for name in ("offset", what, "saturation"))
-    for begin, end in zip(offset, offset[1:]):
-        row[index[begin:end]] = value[begin:end]
-        state.append(row.copy())
-    return np.array(state)
-
-
 def books(file):
     """Largest difference between /history/saturation and its throats and rings, or its rates."""
-    volume, ends = file["throats/volume"][:], file["throats/nodes"][:]
-    throats = replayed(file, len(volume), "changes", "throat")
-    nodes = replayed(file, len(file["nodes/kind"]), "ring_changes", "node")
-    left = np.bincount(file["rings/throat"][:], file["rings/volume"][:], len(volume))
-    total = (throats * (volume - left) + nodes[:, ends].mean(axis=2) * left).sum(axis=1) / volume.sum()
+    volume, left, throats, nodes, kept = stores(file)
+    total = (throats * (volume - left) + kept).sum(axis=1) / volume.sum()
     saturation, time, rate = (file[f"history/{name}"][:] for name in ("saturation", "time", "rate"))
     lost = np.append(0, np.cumsum(rate[:-1] * np.diff(time))) * saturation[0] / file["summary"].attrs["liquid_mass"]
     return max(abs(total - saturation).max(), abs(saturation[0] - lost - saturation).max()), throats, nodes

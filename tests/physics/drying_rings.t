@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
+from ring_books import stores
 from tap import BIN, WATER, done, ok, run, scratch
 
 R = 1e-6
@@ -45,23 +46,9 @@ def lattice(radius):
     return at("lattice")
 
 
-def replayed(file, n, group, what):
-    """What is in each of N throats, or nodes' rings, at each step."""
-    row, state = np.ones(n), []
-    offset, index, value = (file[f"{group}/{name}"][:] for name in ("offset", what, "saturation"))
-    for begin, end in zip(offset, offset[1:]):
-        row[index[begin:end]] = value[begin:end]
-        state.append(row.copy())
-    return np.array(state)
-
-
 def books(file):
     """Largest difference between /history and its throats and rings, and between the part in rings and its sum."""
-    volume, ends = file["throats/volume"][:], file["throats/nodes"][:]
-    throats = replayed(file, len(volume), "changes", "throat")
-    nodes = replayed(file, len(file["nodes/kind"]), "ring_changes", "node")
-    left = np.bincount(file["rings/throat"][:], file["rings/volume"][:], len(volume))
-    kept = nodes[:, ends].mean(axis=2) * left
+    volume, left, throats, nodes, kept = stores(file)
     total = (throats * (volume - left) + kept).sum(axis=1) / volume.sum()
     alone = np.where(throats == 0, kept, 0).sum(axis=1) / volume.sum()
     return (abs(total - file["history/saturation"][:]).max(), abs(alone - file["history/ring_saturation"][:]).max(),
