@@ -9,8 +9,9 @@
 // linear in r^3 (Yiotis et al. 2003).
 //
 // By symmetry half the liquid is enough. Along the wall, x, it lies below
-//     H = x tan a               up to the bisector's end, x_m = (cos t / sin a - 1) cos
-//     a, H = cos t - sqrt(1 - (cos t cot a - x)^2)   up to x_c = cos(t + a) / sin a,
+//     H = x tan a                                  for x up to x_m,
+//     H = cos t - sqrt(1 - (cos t cot a - x)^2)    from there up to x_c,
+//     x_m = (cos t / sin a - 1) cos a, the bisector's end,   x_c = cos(t + a) / sin a,
 // and at H no condition is imposed: on the bisector and the meniscus the derivative
 // across vanishes. Bilinear elements between x lines, y = s H, have an error in the
 // integral that falls as h^2; two grids and extrapolation leave 1e-5.
@@ -18,9 +19,10 @@
 
 #include "basics/memory.h"
 
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 bool corner_holds_film(double half_angle, double contact_angle)
 {
@@ -39,8 +41,8 @@ double corner_area(double half_angle, double contact_angle)
 struct corner_grid {
     int n;
     double *x, *height; // (2 n + 1)
-    double *band;       // (unknowns, n + 2) lower triangle: [k][d] couples k and k - d
-    double *load;       // (unknowns); then the solution
+    double *band;       // (unknowns, n + 2) lower triangle: [k][d] couples k and k + d
+    double *load;       // (unknowns)
 };
 
 static struct corner_grid grid_init(int n, double a, double t)
@@ -122,30 +124,22 @@ static void add_element(struct corner_grid *grid, int i, int j)
         grid->load[node[k]] += load[k];
         for (int l = 0; l < 4; l++)
             if (node[l] >= 0 && node[l] <= node[k])
-                grid->band[node[k] * (grid->n + 2) + node[k] - node[l]] += matrix[k][l];
+                grid->band[node[l] * (grid->n + 2) + node[k] - node[l]] += matrix[k][l];
     }
 }
 
-// Cholesky factor within the band, and half the solution: with L L^T = A and L z = f
-// the integral, f A^-1 f, is z z.
-static double flow_by_factor(struct corner_grid *grid)
+// The integral, f A^-1 f.
+static double flow_by_factor(const struct corner_grid *grid)
 {
-    const int width = grid->n + 2, unknowns = (2 * grid->n - 1) * grid->n;
-    double *a = grid->band, *z = grid->load, flow = 0;
-    for (int k = 0; k < unknowns; k++) {
-        for (int d = k < width - 1 ? k : width - 1; d >= 0; d--) {
-            const int l = k - d;
-            double sum = a[k * width + d];
-            const int most = l < width - 1 - d ? l : width - 1 - d;
-            for (int e = 1; e <= most; e++)
-                sum -= a[k * width + d + e] * a[l * width + e];
-            a[k * width + d] = d > 0 ? sum / a[l * width] : sqrt(sum);
-        }
-        for (int d = 1; d < width && d <= k; d++)
-            z[k] -= a[k * width + d] * z[k - d];
-        z[k] /= a[k * width];
-        flow += z[k] * z[k];
-    }
+    const size_t width = (size_t)grid->n + 2, n = (size_t)((2 * grid->n - 1) * grid->n);
+    gsl_matrix_view band = gsl_matrix_view_array(grid->band, n, width);
+    gsl_vector_view load = gsl_vector_view_array(grid->load, n);
+    gsl_vector *w = gsl_vector_alloc(n);
+    double flow;
+    gsl_linalg_cholesky_band_decomp(&band.matrix);
+    gsl_linalg_cholesky_band_solve(&band.matrix, &load.vector, w);
+    gsl_blas_ddot(&load.vector, w, &flow);
+    gsl_vector_free(w);
     return flow;
 }
 
