@@ -139,7 +139,7 @@ static void renew_dirty(struct emptying_times *times)
     times->n_dirty = 0;
 }
 
-// Finds anew which clusters films draw from, if it is time, and gives these timers.
+// If it is time, finds again which clusters films draw from, and gives them timers.
 static void find_sources(struct emptying_times *times)
 {
     if (film_supply_is_due(times)) film_supply_find(times);

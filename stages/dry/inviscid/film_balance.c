@@ -9,8 +9,8 @@
 // approximate factor of the sites that were not held when it was made,
 //     z = M^-1 r                at those of them that are there and not held now,
 //         r / diagonal          at the others that are not held.
-// Both parts are symmetric and positive definite. It is made anew when it has cost more
-// iterations than a new one would.
+// Both parts are symmetric and positive definite. A new factor replaces M once M has
+// cost more iterations than a new one would.
 #include "film_balance.h"
 
 #include "basics/memory.h"
@@ -25,8 +25,8 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// It is made anew when it has cost so many iterations more than a new one would have:
-// half of what making one takes, as it becomes worse and worse.
+// A new factor is made once the old one has cost so many iterations more than a new one
+// would have: half of what making one takes, because the old one becomes worse.
 static const double WORTH = 20;
 
 // Beyond so many sites each set of held sites has a factor of its own: iterations run

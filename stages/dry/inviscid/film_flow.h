@@ -22,8 +22,8 @@ struct film_flow {
     const int *place;                        // (n) ascending: what names a site
     const double *taken, *least;             // (n)
     struct film_factor *factor; // of earlier flows, on some of the same places
-    bool *held;                 // (n) the level is the least; first a guess, in which
-                                // each connected part of the network has one such site
+    bool *held;                 // (n) the level is the least; first a guess, with one
+                                // such site in each connected part of the network
     struct compensated *level;  // (n) first a guess where not held
     double *surplus;            // (n) 0 where not held
     int rounds, iterations;     // added to
