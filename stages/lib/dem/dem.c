@@ -56,6 +56,7 @@ void dem_free(struct dem *dem)
                            dem->wall_offset,
                            dem->pair_offset,
                            dem->pair_of,
+                           dem->spare_block,
                            dem->is_shared,
                            dem->shared_grain,
                            dem->first_group,

@@ -238,16 +238,20 @@ struct dem {
     int *wall_offset;            // (n_particle+1) into wall_pair
     int *pair_offset;            // (n_particle+1) into pair_of
     int32_t *pair_of;            // (2 n_pair) the pairs of each grain, in their order
-    int *first_group;            // (n_particle) with a pair of the grain
-    int *last_group;             // (n_particle) with a pair whose first is <= the grain
-    int n_chunk;                 // of the groups, for as many threads
-    uint8_t *is_shared;          // (n_particle)
+    int pair_of_room;            // pairs that have room in it
+    void *spare_block;           // of an earlier list of pairs, for the next [pairs.c]
+    size_t spare_size;
+    int *first_group;   // (n_particle) with a pair of the grain
+    int *last_group;    // (n_particle) with a pair whose first is <= the grain
+    int n_chunk;        // of the groups, for as many threads
+    uint8_t *is_shared; // (n_particle)
     int n_shared;
     int32_t *shared_grain; // (n_shared)
     int32_t *first_row;    // (n_shared+1) of `sum`, the first of each
     // Rows of 4 or, if grains turn, 8 doubles: force and moment; 0 between cycles. One
     // for each grain and for the dummy, then one for each pair of a shared grain.
     double *sum;
+    size_t sum_room;  // doubles that have room in it
     bool keeps_loads; // of all pairs, in this cycle
 
     double skin;
@@ -305,6 +309,8 @@ void reactivate_pairs(struct dem *dem);
 void close_pair_ledger(struct dem *dem);
 // Allocates lists of N_PAIR pairs, with what the scene needs; takes over both arrays.
 void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
+// Frees a list, or keeps its block for the next one.
+void give_back_pairs(struct dem *dem, struct pair_list *pairs);
 // Sets separation, distance and overlap of the pair in lane LANE of GROUP, as of where
 // its grains began.
 void set_pair_place(const struct dem *dem, struct pair_group *group, int lane);

@@ -195,7 +195,7 @@ void reactivate_pairs(struct dem *dem)
     if (!inactive) return;
     for (int p = 0; p < dem->pairs.n_pair; p++)
         copy_history(&inactive->all, inactive->index[p], &dem->pairs, p);
-    free_pairs(&dem->pairs);
+    give_back_pairs(dem, &dem->pairs);
     dem->pairs = inactive->all;
     dem->inactive = NULL;
     free_inactive(inactive);

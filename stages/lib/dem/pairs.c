@@ -147,12 +147,27 @@ void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old
     liquid->rupture[to.at] = old->liquid[from.group].rupture[from.at];
 }
 
-// Both lists are sorted by first, then second grain: `before` only goes forward.
-static void fill_pairs(struct dem *dem, const struct pair_list *old)
+// The first of the sorted pairs of OLD that does not come before PAIR.
+static int first_old_pair(const struct pair_list *old, const int32_t pair[2])
+{
+    int low = 0, high = old->n_pair;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        if (compare_pairs(old->particle[middle], pair) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+// Pairs BEGIN..END-1. Both lists are sorted by first, then second grain: `before` only
+// goes forward.
+static void fill_range(struct dem *dem, const struct pair_list *old, int begin, int end)
 {
     struct pair_list *pairs = &dem->pairs;
-    int before = 0;
-    for (int p = 0; p < pairs->n_pair; p++) {
+    int before = first_old_pair(old, pairs->particle[begin]);
+    for (int p = begin; p < end; p++) {
         const struct lane to = lane_of(p);
         struct pair_group *group = &pairs->group[to.group];
         set_grains(group, to.at, pairs->particle[p][0], pairs->particle[p][1]);
@@ -171,8 +186,70 @@ static void fill_pairs(struct dem *dem, const struct pair_list *old)
         else
             set_pair_place(dem, group, to.at);
     }
-    for (int p = pairs->n_pair; p < PAIRS_IN_GROUP * pairs->n_group; p++)
+}
+
+static void fill_pairs(struct dem *dem, const struct pair_list *old)
+{
+    enum { SHARE = 4096 }; // whole groups
+    const int n = dem->pairs.n_pair;
+#pragma omp parallel for num_threads(dem->threads) schedule(dynamic, 1) if (n > SHARE)
+    for (int begin = 0; begin < n; begin += SHARE)
+        fill_range(dem, old, begin, begin + SHARE < n ? begin + SHARE : n);
+    for (int p = n; p < PAIRS_IN_GROUP * dem->pairs.n_group; p++)
         set_dummy_pair(dem, p);
+}
+
+// Where an array lies in the block of a list: from a cache line on.
+struct carving {
+    char *block; // NULL: only how much it takes
+    size_t used;
+};
+
+static void *carve(struct carving *from, size_t count, size_t size)
+{
+    void *array = from->block ? from->block + from->used : NULL;
+    from->used += (count * size + CACHE_LINE - 1) / CACHE_LINE * CACHE_LINE;
+    return array;
+}
+
+// Gives the arrays of N groups their places, first those that begin as 0; returns how
+// many bytes these take.
+static size_t lay_out(const struct dem *dem, struct pair_list *pairs, size_t n,
+                      struct carving *from)
+{
+    pairs->load = carve(from, n, sizeof *pairs->load);
+    pairs->has_shared_grain = carve(from, n, sizeof *pairs->has_shared_grain);
+    pairs->idle = carve(from, n, sizeof *pairs->idle);
+    if (dem->features & FEATURE_ROTATION) {
+        pairs->moment = carve(from, n, sizeof *pairs->moment);
+        pairs->shear = carve(from, n, sizeof *pairs->shear);
+    }
+    if (dem->features & FEATURE_BOND)
+        pairs->bonds = carve(from, n, sizeof *pairs->bonds);
+    if (dem->balance_energy) pairs->loss = carve(from, n, sizeof *pairs->loss);
+    if (dem->features & FEATURE_ROLLING)
+        pairs->rolling = carve(from, n, sizeof *pairs->rolling);
+    if (dem->liquid) pairs->liquid = carve(from, n, sizeof *pairs->liquid);
+    const size_t cleared = from->used;
+    pairs->group = carve(from, n, sizeof *pairs->group);
+    pairs->sum = carve(from, n, sizeof *pairs->sum);
+    if (dem->features & FEATURE_PAIR_LAWS)
+        pairs->laws = carve(from, n, sizeof *pairs->laws);
+    return cleared;
+}
+
+// A block of BYTES or more, the one that the last list has left if it is large enough:
+// fresh pages from the kernel would cost as much as the search itself.
+static void *take_block(struct dem *dem, size_t bytes, size_t *size)
+{
+    void *block = dem->spare_block;
+    *size = dem->spare_size;
+    dem->spare_block = NULL;
+    dem->spare_size = 0;
+    if (*size >= bytes) return block;
+    free(block);
+    *size = bytes + bytes / 8; // lists of the next searches may be longer
+    return allocate_uncleared(*size, 1);
 }
 
 // Allocates what the scene needs, and nothing else.
@@ -181,45 +258,34 @@ void new_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bon
     const int n_group = (n_pair + PAIRS_IN_GROUP - 1) / PAIRS_IN_GROUP;
     const size_t n = (size_t)n_group;
     struct pair_list *pairs = &dem->pairs;
-    *pairs = (struct pair_list){.n_pair = n_pair,
-                                .particle = particle,
-                                .bond = bond,
-                                .n_group = n_group,
-                                .group = allocate_aligned(n, sizeof *pairs->group),
-                                .sum = allocate_aligned(n, sizeof *pairs->sum),
-                                .load = allocate_aligned(n, sizeof *pairs->load),
-                                .has_shared_grain = NEW_ARRAY(uint8_t, n),
-                                .idle = NEW_ARRAY(uint8_t, n)};
-    if (dem->features & FEATURE_ROTATION) {
-        pairs->moment = allocate_aligned(n, sizeof *pairs->moment);
-        pairs->shear = allocate_aligned(n, sizeof *pairs->shear);
-    }
-    if (dem->features & FEATURE_PAIR_LAWS)
-        pairs->laws = allocate_aligned(n, sizeof *pairs->laws);
-    if (dem->features & FEATURE_BOND)
-        pairs->bonds = allocate_aligned(n, sizeof *pairs->bonds);
-    if (dem->balance_energy) pairs->loss = allocate_aligned(n, sizeof *pairs->loss);
-    if (dem->features & FEATURE_ROLLING)
-        pairs->rolling = allocate_aligned(n, sizeof *pairs->rolling);
-    if (dem->liquid) pairs->liquid = allocate_aligned(n, sizeof *pairs->liquid);
+    *pairs = (struct pair_list){
+        .n_pair = n_pair, .particle = particle, .bond = bond, .n_group = n_group};
+    struct carving from = {NULL, 0};
+    lay_out(dem, pairs, n, &from);
+    pairs->block = take_block(dem, from.used, &pairs->block_size);
+    from = (struct carving){pairs->block, 0};
+    memset(pairs->block, 0, lay_out(dem, pairs, n, &from));
+    if (n == 0) return;
+    memset(&pairs->group[n - 1], 0, sizeof *pairs->group); // lanes that hold no pair
+    if (pairs->laws) memset(&pairs->laws[n - 1], 0, sizeof *pairs->laws);
 }
 
 void free_pairs(struct pair_list *pairs)
 {
     free(pairs->particle);
     free(pairs->bond);
-    free(pairs->group);
-    free(pairs->sum);
-    free(pairs->load);
-    free(pairs->has_shared_grain);
-    free(pairs->idle);
-    free(pairs->moment);
-    free(pairs->shear);
-    free(pairs->laws);
-    free(pairs->bonds);
-    free(pairs->loss);
-    free(pairs->liquid);
-    free(pairs->rolling);
+    free(pairs->block);
+}
+
+void give_back_pairs(struct dem *dem, struct pair_list *pairs)
+{
+    if (pairs->block_size > dem->spare_size) {
+        free(dem->spare_block);
+        dem->spare_block = pairs->block;
+        dem->spare_size = pairs->block_size;
+        pairs->block = NULL;
+    }
+    free_pairs(pairs);
 }
 
 // In the order of pairs, so that the sum does not depend on threads.
@@ -249,8 +315,11 @@ static void list_pairs_of_grains(struct dem *dem)
     for (int i = 0; i < n; i++)
         dem->pair_offset[i + 1] += dem->pair_offset[i];
 
-    free(dem->pair_of);
-    dem->pair_of = allocate(2 * (size_t)n_pair, sizeof *dem->pair_of);
+    if (n_pair > dem->pair_of_room) {
+        dem->pair_of_room = n_pair + n_pair / 8;
+        free(dem->pair_of);
+        dem->pair_of = NEW_ARRAY(int32_t, 2 * (size_t)dem->pair_of_room);
+    }
     int *next = duplicate(dem->pair_offset, (size_t)n + 1, sizeof *next);
     for (int p = 0; p < n_pair; p++)
         for (int end = 0; end < 2; end++)
@@ -263,7 +332,7 @@ void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bo
     struct pair_list old = dem->pairs;
     new_pairs(dem, n_pair, particle, bond);
     fill_pairs(dem, &old);
-    free_pairs(&old);
+    give_back_pairs(dem, &old);
     list_pairs_of_grains(dem);
     arrange_sums(dem);
     if (dem->liquid) count_bridges(dem);

@@ -11,6 +11,7 @@
 #include "geometry/vector.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 enum { PAIRS_IN_GROUP = 8, CACHE_LINE = 64 };
@@ -129,6 +130,8 @@ struct contact_law {
 // merely may come near are in it, too: most do nothing, and those that cannot for a
 // while are taken out (inactive_pairs.c).
 struct pair_list {
+    void *block; // that holds the arrays of groups
+    size_t block_size;
     int n_pair;
     int32_t (*particle)[2]; // (n_pair) sorted by first, then second
     int32_t *bond;          // (n_pair) the bond of the packing, broken or not; or -1

@@ -151,7 +151,7 @@ static void reorder_pairs(struct dem *dem, const int32_t *new_number)
     new_pairs(dem, n, particle, bond);
     for (int p = 0; p < n; p++)
         carry_over(&dem->pairs, p, &old, moved[p].from, moved[p].swapped);
-    free_pairs(&old);
+    give_back_pairs(dem, &old);
     free(moved);
 }
 

@@ -8,6 +8,7 @@
 #include "basics/memory.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 // First and last group with a pair of each grain; the grain may move after the last.
 static void assign_groups(struct dem *dem)
@@ -80,10 +81,13 @@ static void assign_sums(struct dem *dem)
     dem->n_chunk = is_large ? dem->threads : 1;
     find_shared_grains(dem);
     const size_t rows = (size_t)number_rows_of_shared(dem);
-    assign_rows(dem);
+    const size_t room = rows * (dem->features & FEATURE_ROTATION ? 8 : 4);
+    memset(dem->pairs.has_shared_grain, 0, (size_t)dem->pairs.n_group);
+    if (dem->n_shared > 0) assign_rows(dem);
+    if (room <= dem->sum_room) return; // it is 0 between cycles
     free(dem->sum);
-    dem->sum = allocate_aligned(rows * (dem->features & FEATURE_ROTATION ? 8 : 4),
-                                sizeof *dem->sum);
+    dem->sum_room = room + room / 8;
+    dem->sum = allocate_aligned(dem->sum_room, sizeof *dem->sum);
 }
 
 void arrange_sums(struct dem *dem)

@@ -75,19 +75,22 @@ static double shear_retained(const struct dem *dem, double before, double now)
 
 // Advances the history of PAIR, where SLIDE is the shear displacement of the last step
 // and LIMIT what friction can carry. Returns whether it slips; adds the energy lost to
-// *LOST.
+// *LOST, if the balance is wanted.
 static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
                           const struct wall_geometry *contact, struct vector slide,
                           double angle, double limit, double *lost)
 {
-    *lost += shear_energy(dem, pair);
+    const bool balance = dem->balance_energy;
+    if (balance) *lost += shear_energy(dem, pair);
     const struct vector before =
         scale(shear_retained(dem, pair->depth, contact->overlap),
               rotated(pair, pair->shear_force, contact->normal, angle));
     pair->shear_force = before;
     pair->normal = contact->normal;
     pair->depth = contact->overlap;
-    *lost -= shear_energy(dem, pair); // turning loses nothing, opening and closing do
+    if (balance)
+        *lost -=
+            shear_energy(dem, pair); // turning loses nothing, opening and closing do
 
     const double stiffness = law_at(dem, &pair->law, contact->overlap).shear_stiffness;
     const struct vector trial = subtract(before, scale(stiffness, slide));
@@ -95,7 +98,7 @@ static bool advance_shear(const struct dem *dem, struct wall_pair *pair,
     const bool slips = size >= limit;
     pair->shear_force = size > limit ? scale(limit / size, trial) : trial;
     // The mean force times the slip, exact however long the step.
-    if (stiffness > 0)
+    if (balance && stiffness > 0)
         *lost +=
             0.5 *
             dot(add(before, pair->shear_force), subtract(trial, pair->shear_force)) /

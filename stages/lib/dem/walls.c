@@ -176,8 +176,18 @@ static void add_up_pair(struct dem *dem, const struct wall_pair *pair)
     dem->energy_ledger.bridges += pair->bridge_work;
 }
 
+// What walls feel is seen by servos, by the balance, and after the last cycle of a run.
+static bool walls_are_seen(const struct dem *dem)
+{
+    bool servo = false;
+    for (int w = 0; w < dem->n_wall; w++)
+        servo = servo || dem->wall[w].is.servo_force > 0;
+    return servo || dem->balance_energy || dem->keeps_loads;
+}
+
 void add_up_walls(struct dem *dem)
 {
+    if (!walls_are_seen(dem)) return;
     for (int k = 0; k < dem->n_wall_pair; k++)
         add_up_pair(dem, &dem->wall_pair[k]);
     for (int w = 0; w < dem->n_wall; w++)

@@ -10,6 +10,7 @@
 #include "geometry/neighbours.h"
 
 #include "basics/memory.h"
+#include "basics/simd.h"
 #include "geometry/linked_cells.h"
 
 #include <stdbool.h>
@@ -78,40 +79,79 @@ static int cells_around(const struct linked_cells *cells, int axis, double x,
     return n;
 }
 
-static bool is_near(const struct spheres *all, const struct member *m,
-                    struct vector from, double reach)
+// Members BEGIN..END-1 of a grid: those of cells side by side.
+struct member_range {
+    int begin, end;
+};
+
+// What is around a place, in at most one range for each cell; how many. Cells that
+// follow each other along z follow each other in memory.
+static int ranges_around(const struct linked_cells *cells, struct vector place,
+                         struct member_range range[27])
 {
+    int around[3][3], n[3], ranges = 0;
+    for (int axis = 0; axis < 3; axis++)
+        n[axis] = cells_around(cells, axis, component(place, axis), around[axis]);
+    for (int x = 0; x < n[0]; x++)
+        for (int y = 0; y < n[1]; y++)
+            for (int z = 0; z < n[2]; z++) {
+                const int cell =
+                    cell_number(cells, (int[]){around[0][x], around[1][y], around[2][z]});
+                const int begin = cells->offset[cell], end = cells->offset[cell + 1];
+                if (z > 0 && range[ranges - 1].end == begin)
+                    range[ranges - 1].end = end;
+                else
+                    range[ranges++] = (struct member_range){begin, end};
+            }
+    return ranges;
+}
+
+SIMD_INLINE double apart_square(const struct spheres *all, struct vector apart,
+                                bool repeats)
+{
+    if (!repeats) return dot(apart, apart);
     double square = 0;
     for (int axis = 0; axis < 3; axis++) {
         const double period = all->period[axis];
-        double apart = component(m->position, axis) - component(from, axis);
-        if (period > 0) apart -= period * rint(apart / period);
-        square += apart * apart;
+        double along = component(apart, axis);
+        if (period > 0) along -= period * rint(along / period);
+        square += along * along;
     }
-    return square <= (reach + m->reach) * (reach + m->reach);
+    return square;
 }
 
-// Pairs of sphere I with those of GRID; of its own level only the later ones.
+// Adds the pairs of sphere I with members of GRID in RANGE; of its own level only the
+// later ones. REPEATS: the box does.
+SIMD_INLINE void meet_range(const struct spheres *all, const struct grid *grid,
+                            struct member_range range, int i, bool own_level,
+                            bool repeats, struct pairs *found)
+{
+    const struct vector from = all->position[i];
+    const double reach = all->reach[i];
+    for (int m = range.begin; m < range.end; m++) {
+        const struct member *member = &grid->member[m];
+        const double both = reach + member->reach;
+        const double square =
+            apart_square(all, subtract(member->position, from), repeats);
+        const int j = member->index;
+        if (!(square <= both * both) || (own_level && j <= i)) continue;
+        GROW_ARRAY(found->pair, found->count, found->capacity);
+        found->pair[found->count][0] = i < j ? i : j;
+        found->pair[found->count++][1] = i < j ? j : i;
+    }
+}
+
 static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
                       bool own_level, struct pairs *found)
 {
-    const struct vector from = all->position[i];
-    int around[3][3], n[3];
-    for (int axis = 0; axis < 3; axis++)
-        n[axis] = cells_around(&grid->cells, axis, component(from, axis), around[axis]);
-    for (int k = 0; k < n[0] * n[1] * n[2]; k++) {
-        const int cell = cell_number(&grid->cells, (int[]){around[0][k / (n[1] * n[2])],
-                                                           around[1][k / n[2] % n[1]],
-                                                           around[2][k % n[2]]});
-        for (int m = grid->cells.offset[cell]; m < grid->cells.offset[cell + 1]; m++) {
-            const int j = grid->member[m].index;
-            if (own_level && j <= i) continue;
-            if (!is_near(all, &grid->member[m], from, all->reach[i])) continue;
-            GROW_ARRAY(found->pair, found->count, found->capacity);
-            found->pair[found->count][0] = i < j ? i : j;
-            found->pair[found->count++][1] = i < j ? j : i;
-        }
-    }
+    const double *period = all->period;
+    const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
+    struct member_range range[27];
+    const int n = ranges_around(&grid->cells, all->position[i], range);
+    for (int k = 0; k < n && repeats; k++)
+        meet_range(all, grid, range[k], i, own_level, true, found);
+    for (int k = 0; k < n && !repeats; k++)
+        meet_range(all, grid, range[k], i, own_level, false, found);
 }
 
 int compare_pairs(const void *a, const void *b)

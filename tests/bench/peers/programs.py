@@ -251,7 +251,7 @@ def liggghts(scene):
              "skin": scene.skin, "dt": STEP, "steps": scene.steps, "g": strength, "content": content,
              "tension": scene.tension, "gx": downwards[0], "gy": downwards[1], "gz": downwards[2],
              "cohesion": "easo/capillary/viscous" if scene.liquid else "off"}
-    launch = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-np", f"{scene.cores}"] if scene.cores > 1 else []
+    launch = ["mpirun", "--allow-run-as-root", "-np", f"{scene.cores}"] if scene.cores > 1 else []
     cpu, said = command(launch + ["liggghts", "-in", os.path.join(HERE, "scene.liggghts"), "-log", "none"] +
                         [word for name, value in names.items() for word in ("-var", name, f"{value}")],
                         cwd=folder.name)
