@@ -68,12 +68,12 @@ def stop_and_go_on(title, command, folder):
     ok(not os.path.exists(kept), f"{title}: and no checkpoint is left")
 
 
-def make_forces(folder):
+def make_forces(folder, steps):
     made = b""
     for stage in ["pack", "tessellate", "merge-nodes", "dry", "force-protocol"]:
-        weaker = ["--set", "force_scale=1"] if stage == "force-protocol" else []
+        weaker = ["--set", "force_scale=1", "--set", f"steps={steps}"] if stage == "force-protocol" else []
         made = run(stage, "-p", SCENE, *weaker, input=made)
-    path = os.path.join(folder, "forces")
+    path = os.path.join(folder, f"forces-{steps}")
     with open(path, "wb") as file:
         file.write(made)
     return path
@@ -163,7 +163,7 @@ def flip(path, at):
 
 
 with scratch() as folder:
-    forces = make_forces(folder)
+    forces = make_forces(folder, 250)
     short = ["dem-replay", forces, "-p", SCENE]
     in_pieces("dem-replay", short)
     in_pieces("dem-replay to a tolerance",
@@ -179,24 +179,24 @@ with scratch() as folder:
               [*equilibria, "--set", "quasi_static.large_displacements=true"])
 
     in_pieces("dem-replay by equilibria with contact bonds",
-              [*equilibria, "--set", "bond.kind=contact"])
+              ["dem-replay", make_forces(folder, 1500), *equilibria[2:], "--set", "bond.kind=contact"])
 
     in_pieces("dem-replay of a body that nothing holds",
               [*short, "--set", "cycles=100", "--set", "support=free", "--set",
                "bond.strength.distribution=weibull"])
 
     pack = ["pack", "--quiet", "--set", "radius=1e-3", "--set"]
-    in_pieces("pack by deposition", [*pack, "count=400", "--set", "method=deposition"])
+    in_pieces("pack by deposition", [*pack, "count=250", "--set", "method=deposition"])
     grow = [*pack, "method=radius_expansion", "--set"]
     in_pieces("pack by growing grains to a porosity",
-              [*grow, "count=1000", "--set", "target=porosity", "--set", "target_value=0.45"])
+              [*grow, "count=500", "--set", "target=porosity", "--set", "target_value=0.45"])
     in_pieces("pack by growing grains to a coordination",
               [*grow, "count=120", "--set", "target=coordination", "--set", "target_value=5"])
     in_pieces("pack by growing discs to a pressure",
-              [*grow, "count=800", "--set", "target=pressure", "--set", "target_value=1e4",
+              [*grow, "count=400", "--set", "target=pressure", "--set", "target_value=1e4",
                "--set", "dimensions=2"])
     in_pieces("pack in a box that closes in",
-              [*pack, "method=domain_contraction", "--set", "count=400", "--set",
+              [*pack, "method=domain_contraction", "--set", "count=250", "--set",
                "periodic=[true,true,true]", "--set", "dynamics.friction=0"])
 
     beads = os.path.join(folder, "beads")
@@ -204,17 +204,17 @@ with scratch() as folder:
     run("pack", *scene, "count=800", "-o", beads)
     # From loose to dense: the time step is shortened on the way, which the state must say.
     in_pieces("simulate: moist beads that fall between walls that move",
-              ["simulate", *scene, "duration=0.2", "--set", "expected_overlap=1e-6", "--set",
+              ["simulate", *scene, "duration=0.1", "--set", "expected_overlap=1e-6", "--set",
                "bridges.volume=2e-12", beads])
 
     dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
-    large, small = make_network(folder, "large", 18), make_network(folder, "small", 10)
+    large, small = make_network(folder, "large", 15), make_network(folder, "small", 10)
     for liquid, network in [("inviscid", large), ("immobile", large), ("viscous", small)]:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
         killed(f"dry, {liquid} liquid", this)
     for liquid, network in [("inviscid", small),
-                            ("immobile", make_network(folder, "middle", 14)),
+                            ("immobile", make_network(folder, "middle", 11)),
                             ("viscous", make_network(folder, "few", 6))]:
         killed(f"dry, curved menisci, {liquid} liquid",
                ["dry", "-p", SCENE, "--set", f"liquid={liquid}", "--set", "kelvin=true", network])
