@@ -106,6 +106,7 @@ static enum status create(struct run *run, struct dem **dem, struct reason *reas
         .n_wall = settings->support == SUPPORT_WALL,
         .wall = &beneath,
         .time_step_safety = settings->time_step_safety,
+        .safety_key = "dem-replay.time_step_safety",
         .density_scaling = settings->density_scaling,
         .force_time_step = settings->force_time_step,
         .threads = settings->threads};

@@ -72,7 +72,7 @@ static enum status check_periods(const struct domain *domain, const struct sizes
     return STATUS_OK;
 }
 
-enum status check_moved(const struct pack_parameters *parameters, bool given,
+enum status check_moved(const struct pack_parameters *parameters, const char *given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason)
 {
@@ -84,8 +84,9 @@ enum status check_moved(const struct pack_parameters *parameters, bool given,
         parameters->dynamics.target == TARGET_PRESSURE)
         return refuse(
             reason, STATUS_BAD_DATA,
-            "pack.target: must not be pressure for radius_expansion of INPUT, "
-            "whose lengths are scaled back at the end (domain_contraction)");
+            "pack.target: must not be pressure for radius_expansion of %s, whose "
+            "lengths are scaled back at the end (domain_contraction)",
+            given);
     enum status status = parameters->extra_layer
                              ? check_layer(domain, parameters->extra_side, reason)
                              : STATUS_OK;

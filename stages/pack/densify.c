@@ -449,10 +449,10 @@ static enum status loosen(const struct making *making, bool grow, double *shrunk
         packing_free(packing);
         return refuse(
             reason, STATUS_BAD_DATA,
-            "INPUT: grains are nearly in one place, or outside the box, and would "
-            "have to be %.3g as large not to overlap (part them by "
+            "%s: grains are nearly in one place, or outside the box, and would have to "
+            "be %.3g as large not to overlap (part them by "
             "pack.method=explosive_repulsion)",
-            *shrunk);
+            making->given, *shrunk);
     }
     if (!grow) stretch_all(making, 1 / *shrunk);
     for (int i = 0; i < packing->n_particle && grow; i++)

@@ -225,10 +225,10 @@ static enum status take_cloud(const struct making *making, struct domain *tall,
     packing_free(making->packing);
     return refuse(
         reason, STATUS_BAD_DATA,
-        "INPUT: grains overlap each other or the walls so much that they would fly "
+        "%s: grains overlap each other or the walls so much that they would fly "
         "apart instead of falling: without overlaps they would be %.3g of their size "
         "(separate them first by pack.method=explosive_repulsion)",
-        fits);
+        making->given, fits);
 }
 
 enum status deposit(const struct making *making, int count, struct reason *reason)

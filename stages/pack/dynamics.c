@@ -221,6 +221,7 @@ enum status start_dynamics(const struct making *making, double stiffness, double
         .gravity = gravity,
         .density_scaling = statics,
         .time_step_safety = safety,
+        .safety_key = "pack.dynamics.time_step_safety",
         .threads = how->threads};
     const enum status status = dem_create(dem, &setup, reason);
     if (status != STATUS_OK) return status;

@@ -58,6 +58,7 @@ struct reached {
 
 // What a method works on; it owns none of it.
 struct making {
+    const char *given; // name of the input whose grains are moved; NULL: none
     const struct dynamics_parameters *how;
     const struct sizes *sizes;
     gsl_rng *random;

@@ -53,21 +53,23 @@ static bool moves_grains(int method)
            method == METHOD_DOMAIN_CONTRACTION || method == METHOD_EXPLOSIVE_REPULSION;
 }
 
-// Whether grains come from INPUT, to stay where they are or to be moved.
-static bool takes_input(const struct invocation *invocation, int method)
+// Name of the input that grains come from, to stay where they are or to be moved, or
+// NULL.
+static const char *given_input(const struct invocation *invocation, int method)
 {
-    if (method == METHOD_IMPORT) return true;
-    if (invocation->n_input && !moves_grains(method))
+    const char *path = invocation->n_input ? invocation->inputs[0] : NULL;
+    if (method == METHOD_IMPORT) return input_name(path ? path : "-");
+    if (path && !moves_grains(method))
         die(STATUS_USAGE,
             "%s: this method takes no input: import, deposition, radius_expansion, "
             "domain_contraction and explosive_repulsion do",
-            invocation->inputs[0]);
-    return invocation->n_input > 0;
+            path);
+    return path ? input_name(path) : NULL;
 }
 
 // Any method but import. If GIVEN, PACKING and DOMAIN hold the grains to begin with.
 static void make_packing(const struct invocation *invocation,
-                         const struct pack_parameters *parameters, bool given,
+                         const struct pack_parameters *parameters, const char *given,
                          struct domain *domain, struct packing *packing,
                          struct reached *reached)
 {
@@ -264,7 +266,7 @@ int main(int argc, char **argv)
     json_t *inputs = json_array();
     struct domain domain;
     struct packing packing = {0};
-    const bool given = takes_input(&invocation, parameters.method);
+    const char *given = given_input(&invocation, parameters.method);
     if (given && !(invocation.grains > 0))
         packing = make_import(&invocation, &parameters, inputs, &domain);
     if (invocation.estimates)

@@ -359,16 +359,17 @@ static struct sizes sizes_of(const struct packing *packing)
 }
 
 // All of it first: sizes, box and count are needed for the checks.
-static enum status make_moved(const struct pack_parameters *parameters, bool given,
-                              struct progress *progress, struct domain *domain,
-                              struct packing *packing, struct reached *reached,
-                              struct reason *reason)
+static enum status make_moved(const struct pack_parameters *parameters,
+                              const char *given, struct progress *progress,
+                              struct domain *domain, struct packing *packing,
+                              struct reached *reached, struct reason *reason)
 {
     struct sizes sizes;
     enum status status = check_target(parameters, reason);
     if (status) return status;
     gsl_rng *random = random_of(parameters);
-    const struct making making = {.how = &parameters->dynamics,
+    const struct making making = {.given = given,
+                                  .how = &parameters->dynamics,
                                   .sizes = &sizes,
                                   .random = random,
                                   .progress = progress,
@@ -390,7 +391,7 @@ static enum status make_moved(const struct pack_parameters *parameters, bool giv
     return status;
 }
 
-enum status make_grains(const struct pack_parameters *parameters, bool given,
+enum status make_grains(const struct pack_parameters *parameters, const char *given,
                         struct progress *progress, struct domain *domain,
                         struct packing *packing, struct reached *reached,
                         struct reason *reason)

@@ -60,11 +60,11 @@ imported("grains with more volume than their box are refused", "1 1 1 0.005\n1 1
 # ---- own grains to move -------------------------------------------------------------------
 
 for method, line in [
-        ("deposition", "INPUT: grains overlap each other or the walls so much that they "
+        ("deposition", "grains: grains overlap each other or the walls so much that they "
                        r"would fly apart .*: without overlaps they would be 0.5 of their size "
                        r"\(separate them first by pack.method=explosive_repulsion\)"),
         ("radius_expansion target=pressure target_value=1",
-         r"pack.target: must not be pressure for radius_expansion of INPUT, .*"),
+         r"pack.target: must not be pressure for radius_expansion of grains, .*"),
         ("domain_contraction", r"pack.method: domain_contraction closes in a box that repeats .*")]:
     words = [w for each in f"method={method}".split() for w in ("--set", each)]
     refused(f"own grains by {method}: refused", BAD_DATA,

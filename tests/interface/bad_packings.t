@@ -113,7 +113,7 @@ scene("a step too long for the speed of grains of 1:20, if stable, is not called
       "sizes.second_radius=0.05 sizes.second_share=0.95",
       r"diverged in cycle \d+: a grain or its surface would move more than 0\.1 mean radii in "
       r"one time step of \S+ s, within the stability limit of \S+ s: too long for such a "
-      "speed, try a smaller time step", status=UNSTABLE)
+      r"speed: try pack.dynamics.time_step_safety=\S+", status=UNSTABLE)
 scene("an extra layer above no top is refused before grains move",
       f"{dense} extra_layer=true",
       r"pack.extra_layer: must be false where there is no flat side \+z")

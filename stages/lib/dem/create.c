@@ -333,14 +333,15 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
     for (int i = 0; i < dem->n_particle; i++)
         lightest = fmin(lightest, dem->mass[i]);
     if (dem->n_particle == 0) lightest = 1;
-    // [K 4.47]; the stiffness is 1.
+    dem->critical_step = 2 * sqrt(fmin(lightest, 1));
+    dem->safety_key = setup->safety_key;
     dem->automatic_share =
         setup->automatic_share > 0 ? setup->automatic_share : AUTOMATIC_SHARE;
     dem->step_is_automatic = !(setup->time_step > 0) && isnan(setup->time_step_safety);
     dem->time_step = dem->step_is_automatic ? automatic_time_step(dem)
                      : setup->time_step > 0
                          ? setup->time_step / dem->unit.time
-                         : setup->time_step_safety * 2 * sqrt(fmin(lightest, 1));
+                         : setup->time_step_safety * dem->critical_step;
 }
 
 // Each pair must be near in one image only. Twice the longest distance at which two

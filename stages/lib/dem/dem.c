@@ -21,6 +21,7 @@
 
 #include <math.h>
 #include <omp.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 void dem_free(struct dem *dem)
@@ -247,15 +248,17 @@ static enum status report_divergence(const struct dem *dem, struct reason *reaso
 {
     const double step = dem_time_step(dem), limit = dem_time_step_limit(dem);
     const bool is_stable = step <= limit;
+    char half[100] = ""; // a step of at most half
+    if (is_stable)
+        snprintf(half, sizeof half, ": too long for such a speed: try %s=%.2g",
+                 dem->safety_key ? dem->safety_key : "time_step",
+                 dem->safety_key ? dem->time_step / dem->critical_step / 2 : step / 2);
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "diverged in cycle %lld: a grain or its surface would move more than "
                   "%g mean radii in one time step of %g s, %s the stability limit of "
                   "%g s%s",
                   (long long)dem->cycle, MAX_STEP, step, is_stable ? "within" : "past",
-                  limit,
-                  is_stable ? ": too long for such a speed, try a smaller "
-                              "time step"
-                            : "");
+                  limit, half);
 }
 
 // A run: cycles wanted and done, and how it stands.

@@ -178,6 +178,9 @@ struct dem_setup {
     double time_step_safety;
     double automatic_share; // with NAN: this share, in (0,1), in place of half; 0: half
     double time_step;       // s; > 0: this and not the safety decides
+    // What the program calls time_step_safety, static, for messages; NULL: it has none,
+    // but time_step
+    const char *safety_key;
     double largest_overlap; // Hertz: expected, over the mean radius; 0: 0.01
     bool force_time_step;   // run even past the stability limit
     // Grains that overlap at the start, or a plane, cylinder or sphere, do so at rest:

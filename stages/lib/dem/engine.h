@@ -177,6 +177,8 @@ struct dem {
     bool no_tensile_damping;
     double time_step;
     double time_step_limit;
+    double critical_step; // of two grains [K 4.47], which the safety multiplies
+    const char *safety_key;
     bool step_is_automatic, step_was_shortened;
     bool step_is_adapted;    // by dem_adapt_time_step
     double automatic_share;  // of the limit
