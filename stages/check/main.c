@@ -101,13 +101,23 @@ static void judge_weight(const struct bond_numbers *weight, struct findings *fin
     const double most = fmax(weight->grain, weight->body);
     if (!(most >= WEIGHT_MATTERS)) return;
     add_finding(findings, FINDING_NOTE, "weight",
-                "%s weighs about %.2g of its suction: gravity=9.81 in force-protocol "
+                "%s weighs about %.2g of its suction: %sgravity=9.81 in force-protocol "
                 "and dem-replay adds weight",
-                weight->grain < most ? "the body" : "a grain", most);
+                weight->grain < most ? "the body" : "a grain", most,
+                weight->grain < 1 ? ""
+                                  : "lengths in millimetres (import.scale=1e-3)? if "
+                                    "not, ");
 }
 
-// Without grains there is nothing to judge but that. The worst come first whatever the
-// order here (add_finding).
+static bool have_other_units(const struct findings *findings)
+{
+    for (int k = 0; k < findings->count; k++)
+        if (!strcmp(findings->item[k].name, "units")) return true;
+    return false;
+}
+
+// Without grains there is nothing to judge but that, and in wrong units neither
+// defaults nor weight. The worst come first whatever the order here (add_finding).
 static struct findings judge(const struct packing *packing,
                              const struct packing_facts *facts,
                              const struct bond_facts *bonds,
@@ -120,6 +130,7 @@ static struct findings judge(const struct packing *packing,
     judge_packing(packing, facts, &findings);
     judge_bonds(packing, bonds, facts->n, bottom_of(facts), &findings);
     judge_free(facts, &findings);
+    if (have_other_units(&findings)) return findings;
     judge_defaults(facts, &findings);
     judge_weight(weight, &findings);
     return findings;

@@ -93,9 +93,13 @@ json_t *suggest(const struct material *material, const struct packing *packing,
 
 static void add_cost(json_t *list, const char *stage, struct cost cost)
 {
-    json_array_append_new(list, json_pack("{s:s,s:o,s:o}", "stage", stage, "seconds",
-                                          rough(cost.seconds), "megabytes",
-                                          rough(cost.mebibytes * 1.048576)));
+    json_t *row =
+        json_pack("{s:s,s:o,s:o}", "stage", stage, "seconds", rough(cost.seconds),
+                  "megabytes", rough(cost.mebibytes * 1.048576));
+    if (cost.most > cost.least)
+        json_object_set_new(row, "range",
+                            json_pack("[oo]", rough(cost.least), rough(cost.most)));
+    json_array_append_new(list, row);
 }
 
 json_t *expected_cost(int n)

@@ -105,10 +105,17 @@ static void tell_suggested(const struct checked *checked, FILE *out)
     size_t k;
     json_t *row;
     json_array_foreach(cost, k, row)
-        fprintf(out, "%-10s %s: %.12g s, %.12g MB\n", k ? "" : "cost",
+    {
+        const json_t *range = json_object_get(row, "range");
+        fprintf(out, "%-10s %s: %.12g s", k ? "" : "cost",
                 json_string_value(json_object_get(row, "stage")),
-                two_digits(json_object_get(row, "seconds")),
-                two_digits(json_object_get(row, "megabytes")));
+                two_digits(json_object_get(row, "seconds")));
+        if (range)
+            fprintf(out, " (roughly, %.12g to %.12g)",
+                    two_digits(json_array_get(range, 0)),
+                    two_digits(json_array_get(range, 1)));
+        fprintf(out, ", %.12g MB\n", two_digits(json_object_get(row, "megabytes")));
+    }
     json_decref(cost);
 }
 

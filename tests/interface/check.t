@@ -131,6 +131,10 @@ for title, position, radius, box, wrong, packed, mends in BAD:
     ok(status == 1 and names(report) == wrong and agree, f"{title}: check says so",
        (status, report["findings"]))
     ok(report["suggested"] is None, f"{title}: nothing is suggested for it")
+    told = {f["name"]: f["text"] for f in report["findings"]}
+    if "units" in wrong:
+        ok(not {"defaults", "weight"} & set(told) and (not mends[0].startswith("import.scale=1e-") or f"pack.{mends[0]}" in told["units"]),
+           f"{title}: what to set, and nothing of defaults and weight", told)
     if not box:
         ok(names(check(path, *near)[1]) == wrong, f"{title}: and of the text")
     if mends:
@@ -226,11 +230,16 @@ twice = text("beads-twice", 1e3 * h5py.File(at("beads.h5"))["particles/position"
              2e3 * h5py.File(at("beads.h5"))["particles/radius"][:])
 ok(check(twice, "--set", "import.scale=1e-3", "--set", "import.diameters=true")[1]["radius"]
    == report["radius"], "diameters for radii")
+gravel = {f["name"]: f["text"] for f in check(beads_mm, "--set", "import.scale=1e-2")[1]["findings"]}
+ok("units" not in gravel and "millimetres (import.scale=1e-3)?" in gravel["weight"],
+   "grains too heavy for the liquid, though below the limit: perhaps millimetres", gravel)
 ethanol = check(beads_mm, "--set", "import.scale=1e-3", "--set", "fluid=ethanol")[1]
 ok(2 < ethanol["weight"]["grain"] / report["weight"]["grain"] < 4,
    "ethanol pulls a third as hard as water", (ethanol["weight"], report["weight"]))
 status, _, said = call("check", "--set", "fluid=other", beads_mm)
 ok(status == 65 and "check.surface_tension" in said, "another liquid has to say how it pulls", said)
+ok(call("check", "--set", "pack.import.scale=1e-3", beads_mm) == (64, "", "check: --set pack.import.scale=1e-3: must go "
+   "without the section, import.scale=1e-3\n"), "keys of pack that check has, too, go without the section")
 
 # ---- input without end --------------------------------------------------------------------
 

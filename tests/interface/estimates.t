@@ -74,6 +74,7 @@ ok(set(os.listdir(folder.name)) == before, "nothing is written")
 ranged = estimate("dem-replay", "--estimate=1000,100", *scene, *sets("tolerance=1e-3", "cycles=100", "most_cycles=10000"))
 exact = [estimate("dem-replay", "--estimate=1000,100", *scene, *sets(f"cycles={n}"))["seconds"] for n in (100, 10000)]
 ok(ranged["range"] == exact, "until at rest: from the fewest cycles to the most", f"{ranged} {exact}")
+ok("note" in ranged and "note" not in estimate("dem-replay", "--estimate=1000,100", *scene), "and it is said that this is rough", ranged)
 wet = ["-p", os.path.abspath("samples/craquelure-wet-40.json"), "-s", "capillary.steps=3"]
 call("pack", *wet[:2], *sets("upper=[4e-6,4e-6,4.68e-6]"), "-o", at("layer.h5"))
 said = estimate("dem-replay", "--estimate", *wet, at("layer.h5"))
@@ -86,8 +87,10 @@ ok(cost["tessellate"]["seconds"] == estimate("tessellate", "--estimate=400")["se
 hasty, restless = (cost[f"dem-replay (100 loads of {n} cycles)"]["seconds"] for n in (100, 10000))
 ok(restless > 10 * hasty, "also where no load comes to rest before the default of most_cycles", f"{hasty} {restless}")
 told = call("check", at("pack.h5"))[1]
-rows = re.findall(r"^(?:cost)? +(\S.*): (\S+) s, (\S+) MB$", told, re.M)
+rows = re.findall(r"^(?:cost)? +(\S.*): (\S+) s(?: \(roughly, (\S+) to (\S+)\))?, (\S+) MB$", told, re.M)
 ok(len(rows) == len(cost) and not any("e" in number for row in rows for number in row[1:]), "and writes seconds and MB without exponents", told)
+ok([bool(row[2]) for row in rows] == ["range" in row for row in cost.values()] and "range" in cost["dem-replay (100 equilibria)"],
+   "with the range of what is only known roughly", told)
 
 # ---- a study that has no run yet --------------------------------------------------------------------
 

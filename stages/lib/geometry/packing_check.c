@@ -38,20 +38,25 @@ void add_finding(struct findings *findings, enum severity severity, const char *
 
 // ---- one after the other ------------------------------------------------------------
 
-// Powers of 1000, because files are in millimetres, micrometres or nanometres.
+// Powers of 1000, because files are in millimetres, micrometres or nanometres. The
+// largest of these that makes grains of the numbers is named, and the next.
 static void judge_units(const struct packing_facts *facts, struct findings *findings)
 {
     static const char *const unit[] = {"milli", "micro", "nano"};
-    int k = 0; // the largest unit that makes grains of these numbers
-    while (k < 2 && facts->median * pow(1e-3, k + 1) > LARGEST_RADIUS)
+    int k = 1;
+    while (k < 3 && facts->median * pow(1e-3, k) > LARGEST_RADIUS)
         k++;
+    char next[100] = "";
+    if (k < 3)
+        snprintf(next, sizeof next, " or in %smetres (1e-%d: %g m)", unit[k],
+                 3 * (k + 1), facts->median * pow(1e-3, k + 1));
     if (facts->median > LARGEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, and liquid holds no grains beyond a "
-                    "centimetre: lengths in %smetres? times 1e-%d "
-                    "(pack.import.scale) it is %g m",
-                    facts->median, unit[k], 3 * (k + 1),
-                    facts->median * pow(1e-3, k + 1));
+                    "centimetre: lengths in %smetres (pack.import.scale=1e-%d: %g "
+                    "m)%s?",
+                    facts->median, unit[k - 1], 3 * k, facts->median * pow(1e-3, k),
+                    next);
     if (facts->median < SMALLEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, less than molecules of liquid have: "

@@ -20,8 +20,10 @@ void print_estimate(const struct cost *cost, const struct body_size *body)
     if (body->loads > 0)
         json_object_set_new(line, "loads", json_integer(llround(body->loads)));
     if (cost->most > cost->least)
-        json_object_set_new(line, "range",
-                            json_pack("[oo]", rough(cost->least), rough(cost->most)));
+        json_object_update_new(
+            line,
+            json_pack("{s:[oo],s:s}", "range", rough(cost->least), rough(cost->most),
+                      "note", "rough: steps or iterations are found only by running"));
     json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');
     json_decref(line);

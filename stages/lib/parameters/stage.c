@@ -339,13 +339,27 @@ static json_t *load_section(const struct command_line *line)
     return section;
 }
 
-// Keys of a scene begin with the section, those of --set do not.
-static void set(json_t *section, const char *stage, const char *assignment)
+// Whether TABLE has the key of ASSIGNMENT.
+static bool has_key(const struct parameter *table, const char *assignment)
 {
-    const size_t length = strlen(stage);
-    if (!strncmp(assignment, stage, length) && assignment[length] == '.')
+    const size_t length = strcspn(assignment, "=");
+    for (const struct parameter *p = table; p->key; p++)
+        if (!strncmp(p->key, assignment, length) && !p->key[length]) return true;
+    return false;
+}
+
+// Keys of a scene begin with the section, this or another with the same key; those of
+// --set do not.
+static void set(json_t *section, const struct stage *stage, const char *assignment)
+{
+    const size_t own = strlen(stage->name), first = strcspn(assignment, ".=");
+    const bool is_own = first == own && !strncmp(assignment, stage->name, own);
+    const char *rest = assignment + first + 1;
+    if (assignment[first] == '.' &&
+        (is_own ||
+         (!has_key(stage->parameters, assignment) && has_key(stage->parameters, rest))))
         die(STATUS_USAGE, "--set %s: must go without the section, %s", assignment,
-            assignment + length + 1);
+            rest);
     parameters_set(section, assignment);
 }
 
@@ -357,7 +371,7 @@ static void fill(const struct command_line *line, void *parameters)
 {
     json_t *section = load_section(line);
     for (int k = 0; k < line->n_set; k++)
-        set(section, line->stage->name, line->set[k]);
+        set(section, line->stage, line->set[k]);
     char where[300];
     snprintf(where, sizeof where, "%s%s%s%s", line->params ? line->params : "",
              line->params && line->n_set ? " with --set" : "", line->params ? ": " : "",
