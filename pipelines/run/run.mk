@@ -127,9 +127,10 @@ demo_own := $(shell jq -r '.dry.throat_radius | select((.distribution // "networ
 	| .seed // 1 | floor' $(demo_scene) 2>/dev/null)
 ifneq ($(strip $(DEMO_SEEDS)),)
 $(call must,DEMO_SEEDS,$(natural),whole numbers)
-$(if $(demo_own),,$(error DEMO_SEEDS: $(demo_scene) draws no throat radii: dry.throat_radius.distribution says how))
+$(if $(or $(demo_own),$(if $(word 2,$(DEMO_SEEDS)),,one)),,$(error DEMO_SEEDS: $(demo_scene) draws no throat radii, so all \
+	seeds are alike: dry.throat_radius.distribution draws them))
 endif
-demo_seeds := $(or $(call once_each,$(DEMO_SEEDS)),$(if $(demo_own),$(shell seq $(demo_own) $$(($(demo_own) + 7)))))
+demo_seeds := $(if $(demo_own),$(or $(call once_each,$(DEMO_SEEDS)),$(shell seq $(demo_own) $$(($(demo_own) + 7)))))
 demo_first := $(firstword $(demo_seeds))
 demo_others := $(wordlist 2,$(words $(demo_seeds)),$(demo_seeds))
 

@@ -116,6 +116,8 @@ setting("--set needs an equals sign", USAGE, "radius", "--set radius: must be KE
 setting("--set needs a key", USAGE, "=1", "--set =1: must be KEY=VALUE")
 setting("--set refuses a value that is not UTF-8", USAGE, b"radius=\xff", r"--set radius=\S+: is not UTF-8")
 setting("--set refuses a key that is not UTF-8", USAGE, b"\xff=1", r"--set \S+=1: is not UTF-8")
+setting("--set refuses half an object", USAGE, "sizes={", r"--set sizes=\{: is not JSON: .+")
+setting("--set refuses half a list", USAGE, "counts=[1,2", r"--set counts=\[1,2: is not JSON: .+")
 setting("--set refuses an unknown key", BAD_DATA, "radiuss=1",
         "pack.radiuss: unknown key; the nearest known one is radius")
 setting("--set says that keys go without the section", USAGE, "pack.radius=1",

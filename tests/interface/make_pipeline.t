@@ -299,6 +299,10 @@ for variable in SCENE IMPORT RUNS BUILD NAME; do
     refused $variable 'a;touch PWN;' -q SCENE=$scene
     refused $variable 'a;touch PWN;' -B SCENE=$scene
 done
+for name in ../x .. x/y; do
+    is "NAME=$name would lie elsewhere, and is refused" 1 \
+        "$(make study NAME=$name 2>&1 >/dev/null | grep -c 'must be the name of a folder, without /')"
+done
 is 'in the environment as well' 2 \
     "$(IMPORT='a;touch PWN;' make -n run SCENE=$scene >/dev/null 2>&1; echo $?)"
 is 'SEEDS, THREADS: not run either' '' "$(make -n strength SEEDS='1;touch PWN' 2>&1 | grep memo)$(
@@ -330,6 +334,8 @@ is 'make demo: two limits' 'immobile inviscid' \
 # Draws of the throat radii, where the scene draws some.
 seeds() { sed -n "s/.* stage=dry .*set=.liquid=$1. \(set=.throat_radius.seed=\([0-9]*\)\)\?.*/s\2/p" | sort | xargs; }
 is 'a scene that draws no radii dries once' 's s' "$(seeds inviscid <<<"$plan") $(seeds immobile <<<"$plan")"
+is 'also where one draw is asked for' 's s' \
+    "$(make -n demo DEMO_SEEDS=1 | tee said | seeds inviscid) $(seeds immobile <said)"
 is 'so it takes no seeds' 2 "$(make -n demo DEMO_SEEDS='1 2' >said 2>&1; echo $?)"
 jq '.dry.throat_radius = {"distribution": "normal", "seed": 5}' $scene >samples/stiff-5x5x10.json
 plan=$(make -n demo)

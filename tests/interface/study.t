@@ -245,6 +245,8 @@ refused("a missing column", 65, "wrong.tsv: row 2: has 1 cells, the line of keys
 refused("a column of no key", 65, "wrong.tsv: column 1: friction: no such stage", "wrong.tsv", "friction\n0.1\n", "--scene=scene.json")
 refused("a table without a scene", 65, "row 1: no scene: a column scene, or SCENE=", "wrong.tsv", head + "0.1\t1\n")
 refused("two studies in one folder", 73, "runs/small: holds the study", "other.json", small, "--name=small")
+refused("a folder outside of that of the runs", 64, "--name=../x: must be the name of a folder", "other.json", small, "--name=../x")
+refused("half a list", 64, "--set pack.counts=[3,3: [3,3 is not JSON", "other.json", small, "--set=pack.counts=[3,3")
 refused("a measure of no artifact", 65, "measure[0]: dryin: no such artifact; 'drying'?", "wrong.json", {**small, "measure": ["dryin:x"]})
 refused("lists of unequal length", 65, "has 1 values, dry.liquid 2", "wrong.json",
         {**small, "axes": [{"zip": {"dry.liquid": ["inviscid", "immobile"], "dry.viscosity": [1]}}]})

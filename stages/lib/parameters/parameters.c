@@ -524,15 +524,19 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
     return effective;
 }
 
-// What is not JSON is text: --set dry.liquid=viscous needs no quotes.
+// What is not JSON is text: --set dry.liquid=viscous needs no quotes. But no text
+// begins as a list or an object.
 void parameters_set(json_t *section, const char *assignment)
 {
     const char *equals = strchr(assignment, '=');
     if (!equals || equals == assignment)
         die(STATUS_USAGE, "--set %s: must be KEY=VALUE", assignment);
     char *key = strndup(assignment, (size_t)(equals - assignment));
+    json_error_t error;
     json_t *value =
-        json_loads(equals + 1, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, NULL);
+        json_loads(equals + 1, JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, &error);
+    if (!value && (equals[1] == '[' || equals[1] == '{'))
+        die(STATUS_USAGE, "--set %s: is not JSON: %s", assignment, error.text);
     if (!value) value = json_string(equals + 1);
     json_t *name = json_string(key); // NULL where it is not UTF-8
     if (!value || !name) die(STATUS_USAGE, "--set %s: is not UTF-8", assignment);
