@@ -88,6 +88,14 @@ def rounded(x, digits=0):
     return number(math.copysign(math.floor(abs(x) * scale + 0.5), x) / scale)
 
 
+def with_unit(x, unit):
+    """5e-7 m -> 500 nm"""
+    k = 0
+    while k < 8 and x >= 0.9995 * 10.0 ** (3 * k - 15):
+        k += 1
+    return f"{x / 10.0 ** (3 * k - 18):.3g} {['a', 'f', 'p', 'n', 'µ', 'm', '', 'k', 'M'][k]}{unit}"
+
+
 def row(*cells):
     """A line of a Markdown table."""
     return f"| {' | '.join(map(str, cells))} |"

@@ -77,6 +77,8 @@ with scratch() as folder:
     drawn = subprocess.run(["pipelines/studies/craquelure/report", "polygons", at("response"), at("cracks.json"), at("none.png")],
                            capture_output=True, text=True)
     ok(drawn.returncode == 0 and drawn.stderr == "", "craquelure without polygons is drawn", drawn.stderr)
+    subprocess.run(["pipelines/studies/craquelure/report", "table", at("response"), at("cracks.json"), at("table.md")], check=True)
+    ok(read(at("table.md")).decode().endswith("\nNo polygons: too little damage.\n"), "its table says why", read(at("table.md")))
     width, height = struct.unpack(">II", read(at("none.png"))[16:24])
     ok((width, height) == (2 * 520 + 70, 520 + 30), "as two pictures in a row", (width, height))
 
