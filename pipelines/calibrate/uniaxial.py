@@ -11,11 +11,12 @@ holds it.
 import json
 import os
 import subprocess
+import sys
 
 import h5py
 import numpy as np
 
-from common import BIN, artifact, refuse
+from common import BIN, artifact, refuse, summary
 from samples import described
 
 LAYER = 3  # thickness of the end layers, mean radii
@@ -71,7 +72,7 @@ class Specimen:
     """The packing of SCENE, made in FOLDER; tests of it leave their files there."""
 
     def __init__(self, scene, folder, inputs=()):
-        self.scene, self.folder = scene, folder
+        self.scene, self.folder, self.tests = scene, folder, 0
         self.packing = os.path.join(folder, "packing.h5")
         self.stage("pack", *inputs, "-o", self.packing)
         with artifact(self.packing, "packing") as file:
@@ -115,7 +116,10 @@ class Specimen:
             file["force"] = force
 
     def pull(self, axis, stresses, bond, how):
-        """The response to STRESSES, an open file."""
+        """The response to STRESSES, an open file. People who wait are told."""
+        self.tests += 1
+        if sys.stderr.isatty():
+            print(f"  test {self.tests}, along {'xyz'[axis]}", end="\r", file=sys.stderr, flush=True)
         forces, response = (os.path.join(self.folder, name) for name in ("forces.h5", "response.h5"))
         self.write_forces(forces, axis, stresses)
         settings = (*(f"{key}={value!r}" for key, value in bond.items()), "support=free", "gravity=0", "snapshots=[0]",
@@ -129,6 +133,10 @@ class Specimen:
         stress = 1e-9 * bond["bond.normal_stiffness"] * self.r.mean()
         with self.pull(axis, [0, stress], whole, how) as file:
             moved, pairs = file["snapshots/displacement"][-1], file["bonds/particles"][:]
+            if summary(file)["steps_unsettled"]:
+                refuse(3, f"{self.scene}: no equilibrium found along {'xyz'[axis]} with shear over normal stiffness "
+                          f"{bond['bond.shear_stiffness'] / bond['bond.normal_stiffness']:.3g}: more bonds (pack.touching_gap) would "
+                          "hold the body")
         piece = components(len(self.r), pairs)
         largest = piece == np.bincount(piece).argmax()
         gauge = largest & (np.abs(self.x[:, axis] - self.middle[axis]) < self.edge[axis] / 4)

@@ -18,12 +18,12 @@ def at(name):
     return os.path.join(folder.name, name)
 
 
-def calibrate(scene, *wanted, program="calibrate", axes="z"):
+def calibrate(scene, *wanted, program="calibrate", axes="z", programs=BIN):
     with open(at("scene.json"), "w", encoding="utf-8") as file:
         json.dump(scene, file)
     words = [at("calibrated.json"), *wanted] if program == "calibrate" else wanted
     return subprocess.run([f"pipelines/calibrate/{program}", at("scene.json"), *words], text=True, capture_output=True,
-                          env={**os.environ, "BIN": BIN, "AXES": axes}, check=False)
+                          env={**os.environ, "BIN": programs, "AXES": axes}, check=False)
 
 
 def numbers(said):
@@ -80,4 +80,28 @@ for what, scene, wanted, status, line in [
     ok(said.returncode == status and line in said.stderr and said.stderr.count("\n") == 1, f"{what} is refused",
        (said.returncode, said.stderr))
 ok(calibrate(SETTLED, "1e9", "none", "1e5", axes="q").returncode == 64, "and axes that there are not")
+
+# Bonds that hardly shear make bodies whose equilibrium may not be found: this dem-replay finds none below a tenth.
+os.mkdir(at("bin"))
+for name in os.listdir(BIN):
+    os.symlink(f"{BIN}/{name}", at(f"bin/{name}"))
+os.remove(at("bin/dem-replay"))
+os.symlink(f"{os.path.dirname(BIN)}/lib", at("lib"))
+with open(at("bin/dem-replay"), "w", encoding="utf-8") as file:
+    file.write(f"""#!/usr/bin/python3
+import subprocess, sys
+import h5py
+subprocess.run(["{BIN}/dem-replay", *sys.argv[1:]], check=True)
+said = dict(word.split("=") for word in sys.argv if word.startswith("bond."))
+if said and float(said["bond.shear_stiffness"]) < 0.0999 * float(said["bond.normal_stiffness"]):
+    with h5py.File(sys.argv[-1], "r+") as response:
+        response["summary"].attrs["steps_unsettled"] = 1
+        response["snapshots/displacement"][:] = 0
+""")
+os.chmod(at("bin/dem-replay"), 0o755)
+said = calibrate(SETTLED, "1e9", "0.15", "1e5", programs=at("bin"))
+ok(said.returncode == 0 and abs(numbers(said)[1] - 0.15) < 1e-3, "a Poisson ratio is found without such bodies", said.stderr)
+said = calibrate(SETTLED, "1e9", "0.9", "1e5", programs=at("bin"))
+ok(said.returncode == 3 and "no equilibrium found along z with shear over normal stiffness 0.01" in said.stderr
+   and said.stderr.count("\n") == 1, "and where there is no other, this is said", (said.returncode, said.stderr))
 done()
