@@ -94,6 +94,13 @@ ok(call("check", "-q", good)[1] == "", "-q says it by the status alone")
 ok(call("check", at("scene.json"))[0] == 65, "what holds no grains is bad input")
 ok(call("check", at("nothing"))[0] == 66, "no such input")
 
+with open(good, "rb") as file:
+    lines = file.read()
+with open(at("windows"), "wb") as file:
+    file.write(b"\xef\xbb\xbf" + lines.replace(b"\n", b"\r\n"))
+told = check(at("windows"), *near)[1]
+ok({**told, "inputs": []} == {**check(good, *near)[1], "inputs": []}, "as Windows writes them", told)
+
 # ---- bad ones: what they are called, what pack makes of them, and what mends them ---------
 
 random = np.random.default_rng(1)
