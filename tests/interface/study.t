@@ -72,6 +72,7 @@ ok(fine and counts == {"packing": 1, "tessellation": 1, "network": 1, "drying": 
    "8 runs share packing, network, dryings and forces", counts)
 ok("8 runs, 4 points of 2; 27 of 27 artifacts to make" in said and "of one core and" in said,
    "their number, time and disk are said before", said)
+ok("\nMean ± standard deviation (95 % interval of the mean).\n" in said, "and what the numbers of the table are", said)
 rows = table("small")
 ok([r["status"] for r in rows] == ["done"] * 8, "a row a run")
 source, chain = None, [("pack", []), ("tessellate", []), ("merge-nodes", []), ("dry", ["liquid=immobile", "throat_radius.seed=2"]),
