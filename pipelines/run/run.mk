@@ -13,6 +13,7 @@
 
 SCENE ?=
 IMPORT ?=# what `pack` reads, for a scene that imports its grains
+$(if $(IMPORT),$(if $(wildcard $(IMPORT)),,$(error IMPORT=$(IMPORT): no such file)))
 
 # Each stage may be replaced: DRY=mydry. It is asked for its --version to know it by.
 PACK ?= $(BUILD)/bin/pack

@@ -303,6 +303,8 @@ for name in ../x .. x/y; do
     is "NAME=$name would lie elsewhere, and is refused" 1 \
         "$(make study NAME=$name 2>&1 >/dev/null | grep -c 'must be the name of a folder, without /')"
 done
+is 'grains that are not there' 'IMPORT=nowhere.txt: no such file.' \
+    "$(make run SCENE=$scene IMPORT=nowhere.txt 2>&1 | grep -o 'IMPORT=.*file[.]')"
 is 'in the environment as well' 2 \
     "$(IMPORT='a;touch PWN;' make -n run SCENE=$scene >/dev/null 2>&1; echo $?)"
 is 'SEEDS, THREADS: not run either' '' "$(make -n strength SEEDS='1;touch PWN' 2>&1 | grep memo)$(
