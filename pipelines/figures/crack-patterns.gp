@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Variables: tables, the folder of the tables that pipelines/figures/crack-patterns makes; n responses; bonds of one.
-wide = 260; high = 470; foot = n == 1 ? 76.0 : 36.0
+# Variables: tables, the folder of the tables that pipelines/figures/crack-patterns makes; n responses; bonds of one;
+# tall, the height of a view over its width.
+wide = 260; high = 58 + 269 * tall < 470 ? 58 + 269 * tall : 470; foot = n == 1 ? 76.0 : 36.0
 columns = n < 4 ? n : 4
 rows = (n + columns - 1) / columns
 total = high * rows + foot
