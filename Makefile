@@ -240,7 +240,7 @@ asked = $(filter $1 $2/%,$(MAKECMDGOALS))
 
 # Goal $1 makes the tables and pictures $2, shows the tables and says where the pictures are.
 study = $(eval .PHONY: $1)$(eval pipeline_goals += $1)$(eval $1: $2 ; \
-	$(if $(really),$(call shown,$(filter %.md,$2),$(filter %.svg %.png,$2))))
+	$(if $(really),$(call shown,$(filter %.md,$2),$(filter %.svg %.png %.gif,$2))))
 shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 
 # Others use what these two define.

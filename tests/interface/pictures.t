@@ -10,6 +10,9 @@ import struct
 import subprocess
 import sys
 
+import numpy as np
+from PIL import Image
+
 sys.path.insert(0, "tests")
 from tap import SCENE, done, ok, read, run, scratch
 
@@ -64,13 +67,18 @@ with scratch() as folder:
     for name, svg in zip(("picture", "patterns", "pattern"), drawn):
         ok(cracks <= colours(svg), f"{name}: cracks have the colours of style.gp", cracks - colours(svg))
         ok("broken in tension" in svg and "broken in shear" in svg, f"{name}: a legend says which is which")
-    ok(re.findall(r">dry</tspan>[^\n]*\n[^\n]*>broken: ([^<]*)<", drawn[0]) == counts,
+    height = float(re.search(r'height="(\d+)"', drawn[1])[1])  # of two views from the front, a little from above and the left
+    ok(abs(height - 36 - 58 - 269 * (5 + 0.22 * 3) / (3 + 0.45 * 3)) < 2, "views are as high as the body", height)
+    ok(re.findall(r">dry</tspan>[^\n]*\n[^>]*>([^<]*)<", drawn[0]) == counts,
        "the last panel of each limit is dry and has all cracks")
 
 # A layer without polygons: no map of when they opened, and gnuplot does not complain of an empty one.
 with scratch() as folder:
     at = lambda *names: os.path.join(folder, *names)
-    run("pack", "-q", "--set", "method=cubic", "--set", "counts=[4,4,4]", "--set", "radius=1e-6", "-o", at("packing"))
+    places = [(i, j, k) for i in range(4) for j in range(4) for k in range(4 if i or j else 9)]  # one column is a tower
+    with open(at("grains.txt"), "w") as file:
+        file.writelines(f"{2e-6 * i} {2e-6 * j} {2e-6 * k} 1e-6\n" for i, j, k in places)
+    run("pack", "-q", "--set", "method=import", "--set", "check=none", at("grains.txt"), "-o", at("packing"))
     run("dem-replay", "-q", "--set", "shrinkage.strain=1e-6", "--set", "shrinkage.steps=2", "--set", "most_cycles=200",
         at("packing"), "-o", at("response"))
     run("crackstats", "-q", "--set", "polygons=true", at("response"), "-o", at("cracks.json"))
@@ -79,6 +87,9 @@ with scratch() as folder:
     ok(drawn.returncode == 0 and drawn.stderr == "", "craquelure without polygons is drawn", drawn.stderr)
     subprocess.run(["pipelines/studies/craquelure/report", "table", at("response"), at("cracks.json"), at("table.md")], check=True)
     ok(read(at("table.md")).decode().endswith("\nNo polygons: too little damage.\n"), "its table says why", read(at("table.md")))
+    seen = np.array(Image.open(at("none.png")).convert("L"))[40:540, 12:508]
+    ok(abs((seen < 60).mean() - (1 - 13 / 16 * np.pi / 4)) < 0.03,
+       "its grains are seen from above, but the three in the square of the tower", (seen < 60).mean())
     width, height = struct.unpack(">II", read(at("none.png"))[16:24])
     ok((width, height) == (2 * 520 + 70, 520 + 30), "as two pictures in a row", (width, height))
 

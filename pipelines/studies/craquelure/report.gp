@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A layer from above. Variables: tables, the folder that pipelines/studies/craquelure/report makes; n views of
 # grains with titles between bars; wide and deep, the box in diameters; opened: 1 if the map of when cracks
-# opened comes beside them, of columns a step wide; 2 if it is empty.
+# opened comes beside them, of columns a step wide; 2 if it is empty; at_once: the saturation at which all opened, or -1.
 columns = opened ? 2 : (n < 2 ? 1 : 2)
 rows = (n + (opened ? 1 : 0) + columns - 1) / columns
 side = opened ? 520 : 340
@@ -32,6 +32,7 @@ if (opened) {
     set object 1 rectangle from 0, 0 to wide, deep fillcolor rgb "#f4f4f4" fillstyle solid border linecolor rgb grey behind
     set palette defined (0 shear, 0.5 sky, 1 blue)
     set cbrange [*:*] reverse
+    if (at_once >= 0) { set cbrange [at_once + 0.05:at_once - 0.05] }
     set colorbox user origin screen (2.0 * side + 4) / total, 0.25 size screen 16 / total, 0.5
     set cbtics 0.1 scale 0
     half = step / 2
