@@ -82,7 +82,8 @@ enum status import_text(const struct bytes *text, struct packing *packing,
     enum status status = copy_text(text, &copy, reason);
     if (status) return status;
     int capacity = 0, number = 0;
-    char *rest = copy + (strncmp(copy, "\xef\xbb\xbf", 3) ? 0 : 3); // UTF-8, says Windows
+    char *rest =
+        copy + (strncmp(copy, "\xef\xbb\xbf", 3) ? 0 : 3); // UTF-8, says Windows
     for (char *line; !status && (line = strsep(&rest, "\n"));) {
         double grain[4] = {0};
         const int count = read_numbers(line, grain);
