@@ -149,7 +149,7 @@ with scratch() as folder:
     # Each grain moved its own way: as tessellated anew, unless it is found that the grains
     # have another diagram by now.
     held, lost, wrong = 0, 0, []
-    for seed in range(12):
+    for seed in (0, 4, 8, 12, 14, 16, *range(18, 24)):
         size = 10 ** (-6 + seed / 6)
         lay(size * unit * np.random.default_rng(seed).normal(size=place.shape))
         status, moved = deform("network", "--set", "on_change=keep")
