@@ -90,13 +90,13 @@ struct liquid {
 // after the other, and not in lanes.
 struct wall_pair {
     int32_t particle, wall;
-    struct contact_law law;
-    struct vector shear_force;
-    struct vector normal;       // towards the wall, at the last force
+    bool acts;                  // on the wall, in the last cycle
     double depth;               // overlap at the last force
     struct vector load, moment; // on the grain, at the last force
+    struct contact_law law;
+    struct vector shear_force;
+    struct vector normal; // towards the wall, at the last force
     // What the wall gets of this force, and what was lost in the step.
-    bool acts;
     struct vector wall_moment; // about its point
     double resistance, dashpots, slip, bridge_work;
     struct rolling_law rolling;

@@ -211,6 +211,10 @@ static void touch_wall(struct dem *dem, struct wall_pair *pair)
     const struct wall_geometry contact =
         wall_geometry(dem, pair->particle, pair->wall, 0);
     const bool touches = contact.overlap >= 0, wet = walls_are_wet(dem);
+    if (!touches && !wet && !pair->acts && !(pair->depth > 0)) { // as it was
+        pair->depth = contact.overlap;
+        return;
+    }
     pair->resistance = pair->dashpots = pair->slip = pair->bridge_work = 0;
     if (wet) update_wall_bridge(dem, pair, contact.overlap);
     if (!touches) leave_wall(dem, pair, contact.overlap);
