@@ -95,8 +95,8 @@ static int ranges_around(const struct linked_cells *cells, struct vector place,
     for (int x = 0; x < n[0]; x++)
         for (int y = 0; y < n[1]; y++)
             for (int z = 0; z < n[2]; z++) {
-                const int cell =
-                    cell_number(cells, (int[]){around[0][x], around[1][y], around[2][z]});
+                const int cell = cell_number(
+                    cells, (int[]){around[0][x], around[1][y], around[2][z]});
                 const int begin = cells->offset[cell], end = cells->offset[cell + 1];
                 if (z > 0 && range[ranges - 1].end == begin)
                     range[ranges - 1].end = end;
