@@ -10,6 +10,22 @@
 //
 // Multiply and add are fused where fmadd says so and nowhere else
 // (-ffp-contract=off): compilers do not contract alike.
+//
+// How a loop over n numbers is written, y += a x:
+//     int i = 0;
+//     for (; i + SIMD_WIDTH <= n; i += SIMD_WIDTH)
+//         store_unaligned(y + i, fmadd(splat(a), load_unaligned(x + i),
+//                                      load_unaligned(y + i)));
+//     for (; i < n; i++)
+//         y[i] = fma(a, x[i], y[i]);
+// The rest goes one by one with the C library's fma, which has the digits of a lane.
+// For a sum over i the width must not show: keep a fixed number of running sums, as
+// dot_product does (sparse/dense_kernels.h).
+//
+// Traps. A branch on any() looks at other lanes with another width, so it may only skip
+// work that changes nothing. Functions with vectors as arguments must be inlined
+// (SIMD_INLINE): how such arguments are passed depends on what a file is compiled for.
+// A maskw of one file means nothing in another.
 #ifndef CRAQUELURE_SIMD_H
 #define CRAQUELURE_SIMD_H
 
@@ -35,7 +51,7 @@
 
 // Fixed widths, for code that is the same on all processors.
 typedef double double4 __attribute__((vector_size(32)));
-typedef int64_t mask4 __attribute__((vector_size(32))); // lanes of 0 or -1
+typedef int64_t mask4 __attribute__((vector_size(32))); // lanes of 0 or -1, of double4
 typedef float float4 __attribute__((vector_size(16)));
 typedef float float8 __attribute__((vector_size(32)));
 typedef int32_t int4 __attribute__((vector_size(16)));
@@ -180,7 +196,8 @@ typedef int64_t maskw __attribute__((vector_size(8 * SIMD_WIDTH)));
 #endif
 #endif
 
-// Comparisons, lane by lane.
+// Comparisons, lane by lane; -0 equals 0. To test for what is right, not for what is
+// wrong, sends NAN to the side of errors, as in scalar code.
 SIMD_INLINE maskw above(doublew a, doublew b) // A > B
 {
     return SIMD_COMPARE(a, b, _CMP_GT_OQ, a > b);
@@ -202,43 +219,51 @@ SIMD_INLINE maskw not_at_most(doublew a, doublew b) // A > B, or either is NaN
 }
 
 #if defined SIMD_AVX512
+// The lanes of A, of B, or of both.
 SIMD_INLINE maskw either(maskw a, maskw b)
 {
     return _kor_mask8(a, b);
 }
 
+// The lanes that A and B have in common.
 SIMD_INLINE maskw both(maskw a, maskw b)
 {
     return _kand_mask8(a, b);
 }
 
+// The lanes of A that are not in B.
 SIMD_INLINE maskw without(maskw a, maskw b)
 {
     return _kandn_mask8(b, a);
 }
 
+// Whether M has any lane.
 SIMD_INLINE bool any(maskw m)
 {
     return m != 0;
 }
 
+// Whether M has LANE, 0 to SIMD_WIDTH - 1.
 SIMD_INLINE bool holds_in(maskw m, int lane)
 {
     return m >> lane & 1;
 }
 
-// A where M holds, otherwise 0.
+// A where M holds, otherwise 0, also where A is NAN or infinite: so what has no meaning
+// in a lane may be computed and masked.
 SIMD_INLINE doublew only_where(maskw m, doublew a)
 {
     return (doublew)_mm512_maskz_mov_pd(m, (__m512d)a);
 }
 
-// A where M holds, otherwise B.
+// A where M holds, otherwise B. Both are computed; neither spreads into the other's
+// lanes. To divide safely, choose 1 as the divisor of the lanes that do not count.
 SIMD_INLINE doublew choose(maskw m, doublew a, doublew b)
 {
     return (doublew)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
 }
 #else
+// The same with -1 or 0 in each lane, so that bitwise operations do all of it.
 SIMD_INLINE maskw either(maskw a, maskw b)
 {
     return a | b;

@@ -11,6 +11,15 @@
 //
 // The patches in volume are eighths of octaves, found from the bits of the number: a
 // force takes one division and one root, no logarithm and no search.
+//
+// How a force is found, in code order:
+//     u      where the volume lies in its patch (place_volume),
+//     1/A    POLYNOMIAL of volume_patch.turning at u,   1/C = steepness,
+//     zeta   sqrt((1 - a/A) / (1 + a/C)),  its place and w (along, place_of),
+//     F      sum over i, j of c_ij u^i w^j  times  (1 + a/C)^-2   (terms_of).
+// A table takes VOLUMES * PLACES * 64 bytes for the coefficients, a megabyte; they are
+// floats, because the error of interpolation (bridge_table_error) is above theirs. One
+// force reads two lines of the cache: a volume_patch and a pair of float8.
 #ifndef CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
 #define CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
 
@@ -73,7 +82,8 @@ static inline struct volume_place place_volume(double volume)
     return (struct volume_place){(int)(bits >> 49) - LEAST_BITS, 2 * fraction - 3};
 }
 
-// The volume at U of a patch, from -1 to 1.
+// The volume at U of a patch, from -1 to 1. The inverse of place_volume. PATCH counts
+// from 0 to VOLUMES - 1.
 static inline double patch_volume(int patch, double u)
 {
     const double octave = ldexp(BRIDGE_TABLE_LEAST, patch / EIGHTHS);
@@ -84,7 +94,8 @@ static inline double patch_volume(int patch, double u)
     (((c)[0] + (u) * (c)[1]) + (u) * (u) * ((c)[2] + (u) * (c)[3]) +                   \
      (u) * (u) * ((u) * (u)) * ((c)[4] + (u) * (c)[5]))
 
-// zeta at rupture in this patch: Horner in pairs, as the vector code adds.
+// zeta at rupture in this patch: Horner in pairs, as the vector code adds. Compare zeta
+// with it: below, the bridge has ruptured.
 static inline double end_at(const struct bridge_table *table, struct volume_place at)
 {
     const double *c = table->end[at.patch], u = at.u;
@@ -100,7 +111,8 @@ static inline bool breaks_in(const double end[ORDER])
     return breaks;
 }
 
-// How many places of zeta are below it, from zeta in the wide ones.
+// How many places of zeta are below it, from zeta in the wide ones. Counts places from
+// zeta = 0 up: NARROW of the wide ones are cut in two.
 static inline double along(double wide)
 {
     return wide + (wide < NARROW ? wide : NARROW);

@@ -20,6 +20,27 @@
 //
 // One engine belongs to one thread of the caller; it uses setup.threads itself. There
 // are no globals, so several engines may run side by side.
+//
+// The least that a program needs:
+//     struct dem_wall floor = {.shape = DEM_PLANE, .normal = {0, 0, 1}};
+//     struct dem_setup setup = {.packing = &packing,
+//                               .n_wall = 1,
+//                               .wall = &floor,
+//                               .law = DEM_LINEAR,
+//                               .material = {.density = 2500,
+//                                            .normal_stiffness = 1e5,
+//                                            .shear_stiffness = 1e5,
+//                                            .friction = 0.5,
+//                                            .damping_ratio = 0.2},
+//                               .gravity = {0, 0, -9.81},
+//                               .time_step_safety = NAN,
+//                               .threads = 1};
+//     struct dem *dem;
+//     struct reason reason;
+//     enum status status = dem_create(&dem, &setup, &reason);
+//     if (!status) status = dem_run_until(dem, 1e-4, 1000000, &reason);
+//     if (!status) dem_positions(dem, position);
+//     dem_free(dem);
 #ifndef CRAQUELURE_DEM_H
 #define CRAQUELURE_DEM_H
 
@@ -257,7 +278,8 @@ enum status dem_create(struct dem **result, const struct dem_setup *setup,
 void dem_free(struct dem *dem);
 
 // External force on every grain from the next cycle on, (n_particle) N; gravity comes
-// on top. FORCE is copied. Driven groups do not feel it.
+// on top. FORCE is copied. Driven groups do not feel it. O(n_particle). Until the first
+// call none acts.
 void dem_set_force(struct dem *dem, const struct vector *force);
 
 // Velocities (n_particle) m/s and angular velocities (n_particle) rad/s, of half a step
@@ -266,7 +288,8 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
                       const struct vector *spin);
 
 // Takes all motion from the grains that WHICH (n_particle) marks. Their shear histories
-// stay: contacts keep the force that they carry.
+// stay: contacts keep the force that they carry. Velocities and spins become 0, forces
+// act on from the next cycle.
 void dem_stop(struct dem *dem, const bool *which);
 
 // These count from the next cycle on: m/s2 of gravity, m/s and rad/s of walls and

@@ -17,6 +17,18 @@
 // Grains of large scenes are numbered along a space-filling curve
 // (space_filling_order.c), so that the partners of a grain are near it in memory. `id`
 // is their index in the packing, `index` the inverse.
+//
+// What holds between two calls: all rows of `sum` are 0; pairs are sorted by first,
+// then second grain, in the engine's numbers; a pair that may touch before `travelled`
+// and `closed_in` have used up half the skin is in the list; no pair is inactive but
+// within a run; `place` is one step ahead of the forces in pairs and walls
+// (places_ahead), `motion` half a step behind `place`.
+//
+// Who writes what while threads run: a thread writes its share of the wall pairs, the
+// groups of its chunks, rows of `sum` that no other thread has, and the grains that it
+// finishes; counts of bridges are atomic; all else is written by the first thread while
+// the others wait at a barrier (dem.c). Functions here without a word on threads are
+// for one thread.
 #ifndef CRAQUELURE_DEM_ENGINE_H
 #define CRAQUELURE_DEM_ENGINE_H
 
@@ -50,6 +62,8 @@ enum feature {
     FEATURE_ROLLING = 32, // contacts resist rolling, and have a history of that
     FEATURE_MOMENT = FEATURE_PARALLEL_BOND | FEATURE_ROLLING // pairs carry couples
 };
+
+// All sums of bits; of most there is no sweep, see EACH_SET.
 enum { FEATURE_SETS = 64 };
 
 // Place of a grain: its displacement from where it began; the radius fills the record,
@@ -87,7 +101,9 @@ struct liquid {
 };
 
 // A grain that is near a wall. Few beside the pairs of grains, so they are structs, one
-// after the other, and not in lanes.
+// after the other, and not in lanes. It is in scaled units; loads and moments are those
+// of the last force. A pair lives as long as the grain is near the wall
+// (find_wall_pairs), and keeps its history over searches.
 struct wall_pair {
     int32_t particle, wall;
     bool acts;                  // on the wall, in the last cycle
@@ -160,35 +176,37 @@ extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 struct dem {
     struct units unit;
     enum dem_law kind;
-    unsigned features;
+    unsigned features; // bits of enum feature that the scene needs
     int n_material;
     struct material *material; // (n_material)
     double *pair_friction;     // (n_material^2)
     double *pair_restitution;
     double *pair_rolling_friction;
-    double contact_time;
+    double contact_time;          // DEM_TIMED
     struct contact_law law;       // of every pair, unless FEATURE_PAIR_LAWS
     double bond_normal_stiffness; // per area
-    double bond_shear_stiffness;
-    double
-        moment_contribution; // share of moments that stresses of parallel bonds count
+    double bond_shear_stiffness;  // per area
+    // beta: share of moments that stresses of parallel bonds count
+    double moment_contribution;
     enum dem_bond_kind bond_kind;
-    double local_damping;
-    bool no_tensile_damping;
+    double local_damping;    // share, [0,1)
+    bool no_tensile_damping; // normal forces >= 0 where no bond holds
     double time_step;
-    double time_step_limit;
-    double critical_step; // of two grains [K 4.47], which the safety multiplies
-    const char *safety_key;
+    double time_step_limit; // that of dem_time_step_limit
+    double critical_step;   // of two grains [K 4.47], which the safety multiplies
+    const char *safety_key; // not owned; NULL: none
+    // Neither time_step nor safety was given; and it has been shortened since,
+    // for pairs found later, or adapted.
     bool step_is_automatic, step_was_shortened;
     bool step_is_adapted;    // by dem_adapt_time_step
     double automatic_share;  // of the limit
     double time_before;      // simulated until the time step last changed
     int64_t step_since;      // the cycle at which it did
     double expected_overlap; // of Hertz contacts
-    int64_t cycle;
-    int threads;
-    pair_sweep *sweep;
-    pair_gaps *gaps;
+    int64_t cycle;           // completed
+    int threads;             // asked for, >= 1
+    pair_sweep *sweep;       // of these features, for this processor
+    pair_gaps *gaps;         // for this processor
 
     int n_particle;
     int32_t *id;            // (n_particle) index in the packing
@@ -200,7 +218,7 @@ struct dem {
     bool has_external;      // some external force is not 0
     struct vector *applied; // (n_particle) without weight; NULL: none
     struct vector gravity;
-    double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed
+    double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed or driven
     bool equal_mobility;   // all mobilities are the same
     double *mass;          // (n_particle) inertia
     double *weight;        // (n_particle) mass that gravity pulls
@@ -213,28 +231,28 @@ struct dem {
     struct vector *lever; // (n_particle) from the point of its group, at the start
     // (n_particle) as the packing numbers them; NULL: nothing shrinks [shrinkage.c]
     double *shrinkage, *first_radius;
-    bool density_scaling;
-    double least_mass; // over the mean mass; 0: none
-    bool falls_alike;  // weights in proportion to inertia, as much in all
+    bool density_scaling; // inertia of all is the mean mass
+    double least_mass;    // over the mean mass; 0: none
+    bool falls_alike;     // weights in proportion to inertia, as much in all
     double largest_radius, smallest_radius;
     double coordinate_error; // rounding of the positions as given
     bool unstressed;         // overlaps at the start count as none
     bool friction_feels_dashpot;
-    double period[3]; // 0 where the box does not repeat
-    double box_lower[3], box_upper[3];
+    double period[3];                  // 0 where the box does not repeat
+    double box_lower[3], box_upper[3]; // as it is now, rescaled
 
     int n_bond;
-    int32_t (*bond_particle)[2]; // (n_bond)
-    double *bond_radius;         // (n_bond)
+    int32_t (*bond_particle)[2]; // (n_bond) lower first, in the engine's numbers
+    double *bond_radius;         // (n_bond) of parallel bonds; else 0
     double *bond_strength[2];    // (n_bond) by enum dem_crack_mode; -1 once broken
 
     struct pair_list pairs;
     struct inactive_pairs *inactive; // what is not swept for now; NULL: nothing
     double
         min_inactive_gap;  // of two grains that may rest; tuned, never seen in results
-    struct liquid *liquid; // NULL: dry
+    struct liquid *liquid; // NULL: dry, and no adhesion
     int n_wall;
-    struct rigid_wall *wall;
+    struct rigid_wall *wall; // (n_wall) in the order of the setup
     int n_wall_pair;
     struct wall_pair *wall_pair; // by grain, then wall
     int *wall_offset;            // (n_particle+1) into wall_pair
@@ -256,7 +274,7 @@ struct dem {
     size_t sum_room;  // doubles that have room in it
     bool keeps_loads; // of all pairs, in this cycle
 
-    double skin;
+    double skin; // pairs are listed whose surfaces are nearer; tuned (neighbours.c)
     struct vector *place_at_search; // (n_particle) displacement when pairs were sought
     double travelled;               // no grain has moved further since
     double last_travel;             // nor further than this in the last cycle
@@ -269,10 +287,11 @@ struct dem {
     double (*grain_ledger)[2];       // (n_particle) gained, lost to local damping
 
     int n_crack, crack_capacity;
-    struct dem_crack *crack;
+    struct dem_crack *crack; // (n_crack) by cycle, then bond; SI
 };
 
-// Refuses a setup that cannot be [check_setup.c].
+// Refuses a setup that cannot be [check_setup.c]. STATUS_BAD_DATA with one line, else
+// STATUS_OK; reads SETUP only, before anything is allocated.
 enum status check_setup(const struct dem_setup *setup, struct reason *reason);
 
 // Material KIND of the setup, 0 the first. In SI, as the user gave it.
@@ -299,7 +318,9 @@ void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bo
 // skin. Renewing finds and takes them, and numbers grains anew from time to time.
 bool pairs_are_due(struct dem *dem);
 void renew_pairs(struct dem *dem);
-// Lays out the rows of `sum` for the pairs that are swept [sums.c].
+// Lays out the rows of `sum` for the pairs that are swept [sums.c]. O(n_particle +
+// n_pair). After any change of the list or of n_chunk. Grains become shared only where
+// n_chunk is above 1.
 void arrange_sums(struct dem *dem);
 // Leaves out pairs that can do nothing, with LEFT cycles to go, and takes them back
 // before they can, and for the last cycle; BEGINS at the start of a run
@@ -470,7 +491,8 @@ double group_power(const struct dem *dem, int i, const struct motion *load);
 
 // Moves the grains BEGIN..END-1 that are not shared, or entries BEGIN..END-1 of the
 // list of shared ones [grains.c]. Leapfrog [K 4.1-4.6]: v += dt F/m, then u += dt v;
-// rotations likewise. Clears the sums that it has used.
+// rotations likewise. Clears the sums that it has used. O(END - BEGIN). Fixed grains
+// have a mobility of 0 and stay; driven ones follow their group.
 struct max_speed move_grains(struct dem *dem, int begin, int end);
 struct max_speed move_shared_grains(struct dem *dem, int begin, int end);
 
@@ -517,6 +539,7 @@ static inline struct vector position_now(const struct dem *dem, int particle)
     return add(dem->start[particle], as_vector(dem->place[particle].displacement));
 }
 
+// Driven grains feel forces and do not answer to them.
 static inline bool is_driven(const struct dem *dem, int i)
 {
     return dem->group_of && dem->group_of[i];
@@ -546,6 +569,7 @@ static inline int bond_of_pair(const struct dem *dem, int pair)
     return dem->pairs.bond ? dem->pairs.bond[pair] : -1;
 }
 
+// For a pair of the list, in plain C: not for the sweep.
 static inline bool is_bonded(const struct dem *dem, int pair)
 {
     return dem->pairs.bonds && dem->pairs.bonds[pair / PAIRS_IN_GROUP]

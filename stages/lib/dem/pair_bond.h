@@ -17,6 +17,15 @@
 // constants with pi are made once for all bonds (bond_law). Twist has k^s and bending
 // k^n, because the fibres of a cylinder are sheared by the one and stretched by the
 // other.
+//
+// Units: R and lengths in mean radii; tension and F^s in stiffness times length; M^s
+// and M^n times a length more; k^n and k^s per area, so k^n A is a stiffness. beta is 1
+// - moments_left_out (dem.h): 1 is the beam of [K 4.41, 4.42], 0 leaves moments out of
+// the stresses.
+//
+// Trap: twist and bending are sums over steps and drift by rounding; tension is not, as
+// it follows from the distance at once. Shear and bending lie in the contact plane of
+// the last step and are turned before anything is added.
 #include "dem/pair_rolling.h"
 
 #include <math.h>
@@ -39,7 +48,8 @@ SIMD_INLINE struct bond_law bond_law(const struct dem *dem, doublew time_step)
 
 // Breaks the bond in lane LANE (rare). Of two modes in one step, the one further past
 // its strength counts. By cross multiplication, because a strength may be 0. noinline
-// keeps it out of the registers of the sweep.
+// keeps it out of the registers of the sweep. NORMAL and SHEAR are the loads, in the
+// units of the strengths. What the bond carried is for the callers to clear.
 static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
                                                  bool by_normal, bool by_shear,
                                                  double normal, double shear)
@@ -54,7 +64,8 @@ static __attribute__((noinline)) void break_bond(struct bond_group *b, int lane,
 }
 
 // Breaks the bonds of the lanes BY_NORMAL or BY_SHEAR; returns how many. NORMAL_LOAD
-// and SHEAR_LOAD in the units of the strengths in B.
+// and SHEAR_LOAD in the units of the strengths in B. Lanes are looked at one by one:
+// few bonds break in one cycle, and mostly none.
 SIMD_INLINE int break_bonds(struct bond_group *b, int at, maskw by_normal,
                             maskw by_shear, doublew normal_load, doublew shear_load)
 {
@@ -78,7 +89,8 @@ struct bond_forces {
 // What the springs of a bond hold, and lose when it breaks:
 //     (tension^2 / (k^n A) + |F^s|^2 / (k^s A) + |M^s|^2 / (k^n I) + (M^n)^2 / (k^s J))
 //     / 2.
-// SQUARE is R^2.
+// SQUARE is R^2. Without a bond (R = 0) it is 0, as spring_loss takes a stiffness of 0
+// to hold nothing.
 SIMD_INLINE doublew bond_energy(const struct dem *dem, const struct bond_forces *c,
                                 doublew square)
 {
@@ -184,7 +196,8 @@ SIMD_INLINE int add_bond_load(struct pair_load *total, const struct dem *dem, in
 // BONDED loses the lanes that broke, LAW gets the spring also in tension. Returns how
 // many broke. The trial shear force is found here once more, before contact_load does
 // it, because a bond must break before friction is applied to it. The strengths are
-// forces.
+// forces. Squares of shear forces are compared: a strength of 0 is reached without a
+// load, INFINITY never.
 SIMD_INLINE int break_contact_bonds(struct lane_law *law, const struct dem *dem, int k,
                                     int at, const struct pair_motion *m, maskw touch,
                                     maskw *bonded, doublew time_step, unsigned features)

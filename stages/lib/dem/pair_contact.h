@@ -26,13 +26,23 @@
 // A Hertz contact that unloads forgets shear force as its shear stiffness falls, F^s
 // times sqrt(U / U_old): with the incremental law alone a loop of loading would give
 // energy out of nothing (Elata & Berryman 1996). U_old = U + V^n dt, by leapfrog.
+//
+// Steps are explicit: forces at the present places, velocities of half a step before
+// (leapfrog). So a dashpot sees the velocity that led here, which stability.c counts in
+// the limit of the step. A contact that opens has spring, trial and force 0 in the same
+// step: touch is U >= 0, and the history of a pair apart is cleared when it is next
+// advanced.
+//
+// What is not here: the pull of liquid and adhesion (liquid.c, adhesion.c) comes to
+// `normal` afterwards and does not limit friction.
 #include "dem/pair_kinematics.h"
 
 // Coefficients of a contact at its overlap. The two secant stiffnesses serve rolling
 // springs, whose stiffness follows that of the contact.
 struct lane_law {
-    doublew spring; // normal force
-    doublew shear_stiffness, normal_damping, shear_damping, friction;
+    doublew spring;          // normal force
+    doublew shear_stiffness; // at this overlap, as both dampings
+    doublew normal_damping, shear_damping, friction;
     doublew normal_stiffness, normal_stiffness_before; // secant
     // Hertz: factor that the shear force of the step before keeps, and the shear
     // stiffness that it had.
@@ -42,7 +52,8 @@ struct lane_law {
 // The law of the lanes: spring, stiffness and damping at the overlaps that M has; the
 // spring is 0 where grains do not TOUCH. From pairs.laws where pairs differ, else from
 // dem->law. Overlaps of grains that do not touch are cleared before the roots: that of
-// a negative number is NAN.
+// a negative number is NAN. Hertz takes four roots and a
+// division, linear laws none.
 SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
                                    const struct pair_motion *m, maskw touch,
                                    doublew time_step, unsigned features)
@@ -94,7 +105,7 @@ struct pair_load {
 
 // ENTRY grows by AMOUNT, an energy, in the lanes WHERE; only if the balance is wanted
 // (pairs.loss). Each pair has its entry: sums over pairs are made later in one order,
-// for any number of threads.
+// for any number of threads. ENTRY: eight numbers a group, aligned.
 SIMD_INLINE void add_to_ledger(double *entry, maskw where, doublew amount)
 {
     store(entry, load(entry) + only_where(where, amount));
@@ -131,15 +142,17 @@ SIMD_INLINE doublew friction_normal_force(const struct dem *dem,
 // that stretches it, and the force at which it slips. Shear and rolling use the same
 // one, with forces or moments.
 struct slipping_spring {
-    doublew stiffness, before, retained;
-    struct vectorw velocity;
-    doublew limit;
+    doublew stiffness, before, retained; // per length or angle; 1
+    struct vectorw velocity;             // in the contact plane
+    doublew limit;                       // >= 0
 };
 
 // One step of such a spring with its HISTORY [K 4.12-4.16, 4.25-4.26]; SLIPS says where
 // it does. Compared by squares, so that the root is taken only where some lane slips.
 // Radial return: the force keeps the direction of the trial. What slip takes is (trial
-// - force) / k, the slip, times the mean of the force before and after.
+// - force) / k, the slip, times the mean of the force before and after. HISTORY is
+// overwritten with the force that is returned. With FEATURE_HERTZ it is first made
+// smaller by `retained`. A limit of 0 (no friction) leaves no force.
 SIMD_INLINE struct vectorw advance_spring(const struct dem *dem, int k, int at,
                                           double (*history)[PAIRS_IN_GROUP],
                                           const struct pair_motion *m,

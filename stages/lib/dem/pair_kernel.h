@@ -12,11 +12,27 @@
 //     M = arm n x F^s (+ moments of rolling and bonds) [K 4.18, 4.21, 4.43, 4.44].
 // The arithmetic is that of each pair alone, in one order, fused where it says so, so
 // both widths give the same bytes. tests/bench/bench_dem.c counts operations and bytes.
+//
+// What a sweep touches: it reads `place`, `motion` and the group (grains, separation,
+// overlap); it reads and writes the histories (shear, rolling, bonds) and, with the
+// balance, `loss`; it adds to `sum`; it writes `idle`, what is left of bonds that broke
+// and, in the last cycle of a run, the loads. Threads sweep disjoint groups, and a
+// grain that two of them have gets a row of `sum` for each pair (engine.h), so no two
+// threads write one number.
+//
+// Lanes that do nothing are computed as well and masked, as branches for single lanes
+// would cost more. The dummy grain of unused lanes is far from itself and gets loads of
+// 0.
+//
+// A new feature takes a bit in enum feature, its sets in EACH_SET or its kin
+// (engine.h), the choice in choose_features (create.c), an array of groups in pairs.h
+// if it has a history, with a column in state_columns.c, and its term in sweep_lanes.
 #include "dem/pair_bond.h"
 
 // Subtracts ON_FIRST from the sums of the first grains and adds ON_SECOND to those of
 // the second. One pair after the other, as pairs may have grains in common. Four
-// doubles a row: force only, for scenes in which grains do not turn.
+// doubles a row: force only, for scenes in which grains do not turn. The fourth number
+// of a row stays 0.
 SIMD_INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *second,
                           struct rows on_first, struct rows on_second)
 {
@@ -29,7 +45,8 @@ SIMD_INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *se
 
 // The same with forces, opposite ones, and moments. A sum is one cache line: with 8
 // lanes it is one vector. ON_FIRST is subtracted, too: callers give it the sign for
-// that.
+// that. A row is force x, y, z, 0 and moment x, y, z, 0. First and second grain of one
+// pair may not be the same but in unused lanes, where all is 0.
 SIMD_INLINE void add_eight(double *sum, const uint32_t *first, const uint32_t *second,
                            struct rows force, struct rows on_first,
                            struct rows on_second)
@@ -124,6 +141,8 @@ SIMD_INLINE void scatter_loads(const struct dem *dem, int k, int at,
 // this order because each needs the one before: a contact bond breaks before friction
 // acts on it, rolling friction needs the normal force, a bond's moment is added last.
 // The pull of a bridge was found before the sweep (liquid.c); here it only acts.
+// Energies are booked where they are lost: pull times V^n dt is what a bridge took from
+// the motion in the step.
 SIMD_INLINE int sweep_lanes(const struct dem *dem, int k, int at,
                             const struct pair_motion *motion,
                             const struct bond_law *bonds, doublew time_step, int *busy,
@@ -182,7 +201,8 @@ SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
 }
 
 // One cycle of groups BEGIN .. END - 1. Returns how many bonds broke. FEATURES is a
-// constant wherever this is inlined.
+// constant wherever this is inlined. Without a step done (cycle 0) the time step counts
+// as 0: no history grows and no plane turns, and forces are those of the places alone.
 SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
                              unsigned features)
 {
@@ -250,6 +270,8 @@ unsigned GAPS_NAME(const struct dem *dem, int k, double gap[PAIRS_IN_GROUP])
     return wet;
 }
 
+// One function a set of features, named sweep_avx2_K or sweep_avx512_K for the set K
+// (engine.h declares them, pair_sweeps.c has the table).
 #define SWEEP(features)                                                                \
     int SWEEP_NAME(features)(const struct dem *dem, int begin, int end)                \
     {                                                                                  \

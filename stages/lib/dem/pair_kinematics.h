@@ -21,11 +21,16 @@
 // first-order rotations F - n_old (F.n) and F + a n x F lengthen F a little each time.
 // With (n - t/2) for n_old and (1 - a^2/2) F the length holds to fourth order and F
 // ends in the new plane exactly.
+//
+// Errors: stretch and overlap are exact to a few roundings of du (relative to d0, 1e-16
+// |du|); V^s and the rotation are those of leapfrog, of second order in dt. Where two
+// centres coincide n is 0 and so is all that follows along it, in place of NAN.
 #include "dem/pair_simd.h"
 
 // How the contact plane has turned in the last time step. All that is needed to turn
 // any vector of the plane, so that the shear force, bending and rolling moments share
-// it.
+// it. In a step the contact plane turns about the axis n x t by |t| = |V_t| dt/d, and
+// about n by `spin`.
 struct plane_rotation {
     struct vectorw normal;
     struct vectorw middle; // n - t/2
@@ -56,7 +61,7 @@ SIMD_INLINE bool has_equal_arms(unsigned features)
 // they part. The arms reach to the middle of the overlap [K 4.9].
 struct pair_motion {
     struct plane_rotation rotation;
-    doublew stretch, overlap;
+    doublew stretch, overlap;      // d - d0; U0 - stretch, below 0 apart
     doublew first_arm, second_arm; // from the centres to the contact point
     doublew normal_velocity;
     struct vectorw shear_velocity; // V^s
@@ -70,7 +75,8 @@ struct spin_terms {
     struct vectorw relative; // omega_j - omega_i
 };
 
-// Equal arms need only the sum: half the transpositions.
+// Equal arms need only the sum: half the transpositions. SPINS: the angular halves of
+// `motion`, records of eight. I, J: scaled indices (pairs.h) of AT and on.
 SIMD_INLINE struct spin_terms find_spin_terms(const struct pair_motion *m,
                                               const double *spins, const uint32_t *i,
                                               const uint32_t *j, unsigned features)
@@ -90,7 +96,8 @@ SIMD_INLINE struct spin_terms find_spin_terms(const struct pair_motion *m,
     return s;
 }
 
-// The same where APART, omega_j - omega_i, is known.
+// The same where APART, omega_j - omega_i, is known. fetch_changes has APART from the
+// same loads as the velocities, so only the spin of the first grain is fetched besides.
 SIMD_INLINE struct spin_terms find_bonded_spin_terms(const struct pair_motion *m,
                                                      struct vectorw spin_i,
                                                      struct vectorw apart,
@@ -140,9 +147,9 @@ SIMD_INLINE struct inverses invert(doublew distance, doublew distance_at_start)
 
 // Distance of the pairs. PLACE_I and PLACE_J carry the radii as their fourth number.
 struct lane_distance {
-    struct vectorw separation;
-    doublew inverse; // 1 / d
-    doublew stretch;
+    struct vectorw separation; // s = x_j - x_i
+    doublew inverse;           // 1 / d
+    doublew stretch;           // d - d0
     struct rows place_i, place_j;
 };
 
@@ -153,7 +160,8 @@ struct lane_distance {
 // by Taylor series to rounding while |x| is at most SMALL_CHANGE.
 #define SMALL_CHANGE 0x1p-11
 
-// Horner's rule: c0 + c1 x + ... + c4 x^4.
+// Horner's rule: c0 + c1 x + ... + c4 x^4. Four fused operations. The term left out is
+// below 2^-53 of the sum while |x| is at most SMALL_CHANGE: 63/256 x^5 is 7e-18 there.
 SIMD_INLINE doublew series(doublew x, double c0, double c1, double c2, double c3,
                            double c4)
 {

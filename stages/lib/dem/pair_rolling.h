@@ -10,6 +10,11 @@
 // Twisting about n is free. M^r is kept for the next step, turned and forgotten as the
 // shear force is. 9/4 is theirs, after Jiang, Yu and Harris (2005). All is in scaled
 // units.
+//
+// Without friction in rolling (arm = 0) all of it is 0. The moment on the first grain
+// is the opposite; both come to the moments of shear in scatter_loads. The largest
+// rolling moment, arm F^n, is reached after rolling by 4/9 F^n / (k arm), and spring
+// and dashpot count in the limit of the time step (stability.c).
 #include "dem/pair_contact.h"
 
 // The moment on the second grain; PUSH is the force of spring and dashpot along n. No

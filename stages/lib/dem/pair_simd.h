@@ -11,6 +11,14 @@
 // lie together because pairs find grains at random places, so one line of the cache has
 // them all; arithmetic wants the same number of many pairs. So whole records are loaded
 // and then transposed.
+//
+// For SIMD_WIDTH = 4 and the records a, b, c, d of lanes 0 to 3, in code order:
+//     rows      ax ay az aw | bx by bz bw | cx cy cz cw | dx dy dz dw
+//     EVEN, ODD ax bx az bz   ay by aw bw   cx dx cz dz   cy dy cw dw
+//     LOWER     ax bx cx dx   ay by cy dy       (x and y)
+//     UPPER     az bz cz dz   aw bw cw dw       (z and the fourth)
+// so eight shuffles serve four components. Nothing here rounds but the arithmetic of
+// components, which is that of each lane alone.
 #include "dem/engine.h"
 
 #include "basics/simd.h"
@@ -101,7 +109,7 @@ struct vectorw_and_fourth {
 
 // The record of STRIDE doubles, 4 or 8, at a scaled INDEX (INDEX_SCALE). INDEX is eight
 // times the grain's number: the processor scales by 1, 2, 4 or 8 in an address, so 32
-// and 64 bytes need no multiplication.
+// and 64 bytes need no multiplication. BASE must be aligned to a record.
 SIMD_INLINE double *record(const double *base, size_t stride, uint32_t index)
 {
     return (double *)((uintptr_t)base + stride * sizeof *base / INDEX_SCALE * index);
@@ -120,6 +128,10 @@ SIMD_INLINE double4 load_quad(const double *base, size_t stride, uint32_t index)
     return *(const double4 *)record(base, stride, index);
 }
 
+// EVEN, ODD: of two rows in turn, the even or odd places. LOWER, UPPER: the first or
+// second half of each four, of both. LOWER_TWO, UPPER_TWO undo that for rows_of.
+// PAIR_UP joins two records of four to one row of eight. ROWS: those that `fetch`
+// loads, of the pointer p, the stride and the indices i.
 #if SIMD_WIDTH == 8
 #define PAIR_UP(a, b)                                                                  \
     (doublew) _mm512_insertf64x4(_mm512_castpd256_pd512((__m256d)(a)), (__m256d)(b), 1)
@@ -161,7 +173,8 @@ SIMD_INLINE struct rows fetch(const double *p, size_t stride, const uint32_t *i)
     return (struct rows){ROWS};
 }
 
-// Before transposing: half the shuffles of adding afterwards.
+// Before transposing: half the shuffles of adding afterwards. Of each row A + B; below
+// A - B.
 SIMD_INLINE struct rows add_rows(struct rows a, struct rows b)
 {
     for (int k = 0; k < 4; k++)
@@ -223,7 +236,8 @@ SIMD_INLINE struct rows rows_of(struct vectorw a)
                           UPPER_TWO(xy1, zw1)}};
 }
 
-// Lane K of ROWS.
+// Lane K of ROWS. The record of that pair, x, y, z and a fourth. K is a constant where
+// loops are unrolled, so the choice costs nothing.
 SIMD_INLINE double4 quad_of(struct rows rows, int k)
 {
 #if SIMD_WIDTH == 8

@@ -5,6 +5,12 @@
 // Why eight: a group is one AVX-512 vector or two of AVX2, so one layout serves both
 // kernels, and every array of eight doubles is one cache line. Why not one array for
 // each quantity: what a group needs of one kind then lies in successive lines.
+//
+// A scene pays for what it has. In bytes a pair: 56 for its place, 8 for its rows of
+// sums, 24 for the last load and 48 for moments; a shear history 24; coefficients of
+// its own 40; a bond 96; a bridge 40; rolling 40; the ledger of energy 32. Of a group
+// that does nothing, a cycle reads the places of its pairs and the records of their
+// grains, no more.
 #ifndef CRAQUELURE_DEM_PAIRS_H
 #define CRAQUELURE_DEM_PAIRS_H
 
@@ -178,11 +184,12 @@ static inline struct vector lane_vector(const double (*a)[PAIRS_IN_GROUP], int l
 }
 
 // Frees what it owns, not the struct. The struct holds dangling pointers then: assign
-// another list to it.
+// another list to it. The arrays of groups lie in one block.
 void free_pairs(struct pair_list *pairs);
 // Copies history and image of a pair that was in the old list; SWAPPED: its grains are
 // in the other order now. Vectors of swapped pairs change sign, because they act on the
-// other grain now; the twist does not, because n turns round as well.
+// other grain now; the twist does not, because n turns round as well. Indices of pairs,
+// not of groups. Both lists have the same kinds of arrays, being of one engine.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped);
 

@@ -18,6 +18,7 @@ struct column {
     double least, most;
 };
 
+// A value; its names are static.
 struct column_list {
     struct column column[128]; // more than any scene has
     int count;
@@ -29,7 +30,7 @@ struct column_list {
 struct column_list list_columns(struct dem *dem);
 
 // Address of number K of row ROW. K counts from 0 to width - 1. Of the type of the
-// column.
+// column. Not checked: ROW and K must be in range.
 char *column_address(const struct column *column, int64_t row, int k);
 
 #endif

@@ -32,12 +32,14 @@ static inline struct image image_difference(struct image a, struct image b)
     return a;
 }
 
-// The same pair seen from its other end.
+// The same pair seen from its other end. A throat from A to B in image i is one from B
+// to A in image -i: each is stored once, from its lower end.
 static inline struct image image_opposite(struct image a)
 {
     return image_difference((struct image){0}, a);
 }
 
+// All three components.
 static inline bool same_image(struct image a, struct image b)
 {
     return a.along[0] == b.along[0] && a.along[1] == b.along[1] &&

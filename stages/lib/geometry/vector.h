@@ -40,14 +40,16 @@ static inline double dot(struct vector a, struct vector b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// A x B: right-handed, |A| |B| sin of the angle between them.
+// A x B: right-handed, |A| |B| sin of the angle between them. 0 for parallel ones to
+// rounding only: test lengths against a tolerance, not against 0.
 static inline struct vector cross(struct vector a, struct vector b)
 {
     return (struct vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z,
                            a.x * b.y - a.y * b.x};
 }
 
-// |A|, and |A - B|; 0 for equal places.
+// |A|, and |A - B|; 0 for equal places. The square root is the nearest number to that
+// of the rounded square; no scaling, see the head.
 static inline double norm(struct vector a)
 {
     return sqrt(dot(a, a));
@@ -64,7 +66,7 @@ static inline struct vector midpoint(struct vector a, struct vector b)
     return add(a, scale(0.5, subtract(b, a)));
 }
 
-// Component 0, 1 or 2.
+// Component 0, 1 or 2. AXIS 2 is taken for any other number.
 static inline double component(struct vector a, int axis)
 {
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;

@@ -8,7 +8,7 @@
 
 // sum a_i b_i over N numbers at any address: eight running sums, of i mod 8, added at
 // the end; then the rest one by one. The order of the additions is part of the result:
-// two vectors of four sums, then pairs of them.
+// two vectors of four sums, then pairs of them. N may be 0.
 static inline double dot_product(int n, const double *a, const double *b)
 {
     double4 sum[2] = {{0}};
@@ -27,7 +27,8 @@ static inline double dot_product(int n, const double *a, const double *b)
 // C (m by n) = A (m by k) B (n by k)^T; of a square C at least the lower triangle where
 // LOWER. WORK (PACKED k), see vector_kernels.h. Reads up to seven numbers past the end
 // of A and ignores them. The kernel is that of the processor (vector_kernels.h), with
-// the same digits on all.
+// the same digits on all. 2 m n k operations; C is overwritten. C must be apart from A
+// and B.
 void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
                          const double *b, int b_stride, double *c, int c_stride,
                          bool lower, double *work);

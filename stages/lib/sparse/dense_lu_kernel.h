@@ -13,6 +13,19 @@
 //     L_rk = a_rk / a_kk,  a_rl -= L_rk a_kl for l in the panel,
 //     then right of it U_pc = a_pc - sum_{i<p} L_pi U_ic,  a_rc -= sum_p L_rp U_pc.
 // A column without a number above 0 makes the matrix singular: false.
+//
+// Afterwards entry (row[r], c) is U_rc for c >= r and L_rc below, whose diagonal of
+// ones is not kept: P A = L U with row r of P A the row row[r] of A. dense_substitute
+// reads just that.
+//
+// Cost: 2/3 n^3 operations, nearly all in add_tile_rows, whose tile of HEIGHT rows and
+// SIDE columns fills 8 (AVX2) or 16 (AVX-512) registers while it goes through a panel's
+// DENSE_PANEL products. A panel of n rows is read from WORK column after column, where
+// it is contiguous. Memory besides: WORK and a tile of DENSE_PANEL by SIDE numbers on
+// the stack.
+//
+// Trap: a NAN is never the pivot, as no comparison with it holds; it spreads through
+// the rows and shows in the answer, not in what dense_factor returns.
 
 enum {
     SIDE = 2 * SIMD_WIDTH,
@@ -21,7 +34,7 @@ enum {
 
 // The first of the largest; -1: there is none above 0. Lane by lane first, so that the
 // loop has no branch; then the place of the largest is looked up. Comparing only, so
-// the choice is the same on all processors.
+// the choice is the same on all processors. O(n), reads only.
 static int find_pivot(int n, const double *column)
 {
     double largest[SIDE] = {0}, most = 0;
@@ -40,7 +53,9 @@ static int find_pivot(int n, const double *column)
     return -1;
 }
 
-// In the panel numbers move; in the matrix only ROW does.
+// In the panel numbers move; in the matrix only ROW does. ROW and PANEL count from the
+// top of the panel; HEIGHT is the stride of its columns. L and U of earlier panels stay
+// in the matrix and go with `row`.
 static void exchange_rows(double *panel, int height, int width, int *row, int k, int l)
 {
     const int other = row[k];
@@ -53,7 +68,7 @@ static void exchange_rows(double *panel, int height, int width, int *row, int k,
     }
 }
 
-// TO -= SHARE FROM
+// TO -= SHARE FROM Fused, in the lanes and in the rest alike.
 SIMD_INLINE void subtract_column(int n, double share, const double *restrict from,
                                  double *restrict to)
 {
@@ -66,7 +81,7 @@ SIMD_INLINE void subtract_column(int n, double share, const double *restrict fro
 }
 
 // WIDTH columns of PANEL, HEIGHT numbers each. Right-looking: after column k all later
-// columns of the panel are up to date.
+// columns of the panel are up to date. On false a part of ROW is exchanged already.
 static bool factor_panel(double *panel, int height, int width, int *row)
 {
     for (int k = 0; k < width; k++) {
@@ -88,6 +103,7 @@ static bool factor_panel(double *panel, int height, int width, int *row)
 // What the first WIDTH of ROW are in COLUMNS columns from LAST on, below the panel's
 // triangle in columns FIRST on; and its opposite in TILE. In rising order of the
 // pivots, each with those before it in TILE. The opposite, because add_tile_rows adds.
+// With FIRST, LAST columns of the matrix. COLUMNS <= SIDE; the rest of TILE is 0.
 static void finish_pivots(double *matrix, int stride, const int *row, int width,
                           int first, int last, int columns, double tile[][SIDE])
 {
@@ -130,7 +146,8 @@ SIMD_INLINE void add_tile_rows(int rows, int width, double *const share[],
 
 // The same of COUNT rows of the matrix, in COLUMNS columns from LAST on. A tile that
 // the matrix does not fill is worked on in EDGE and copied back; rows beyond the last
-// repeat the first of the tile and are dropped.
+// repeat the first of the tile and are dropped. ROW begins below the panel's pivots.
+// Rows are independent: none reads what another writes.
 static void subtract_rows(double *matrix, int stride, const int *row, int count,
                           int width, int first, int last, int columns,
                           double tile[][SIDE])
@@ -152,7 +169,8 @@ static void subtract_rows(double *matrix, int stride, const int *row, int count,
     }
 }
 
-// Panel by panel, then SIDE columns at a time right of it.
+// Panel by panel, then SIDE columns at a time right of it. The function of the table
+// vector_kernels; arguments as dense_factor in dense_lu.h.
 static bool factor_dense(int n, double *matrix, int stride, int *row, double *work)
 {
     for (int k = 0; k < n; k++)

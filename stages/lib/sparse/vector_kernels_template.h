@@ -14,6 +14,16 @@
 //     add_tile  sum_il += sum_p a_pi b_pl, p over rows, i and l over lanes;
 //     multiply  C_ij = sum_p A_ip B_jp, A_ip at a[p a_stride + i], C by columns too.
 // Numbers are in the units of the matrix.
+//
+// Why these tiles: AVX2 has 16 registers, AVX-512 has 32. A product keeps TALL times
+// TILE_COLUMNS sums, TALL of A and one of B: 12 + 3 + 1 or 24 + 3 + 1. A forward solve
+// keeps MOST columns by PARTS vectors, 12 or 6, and one row. So no sum leaves its
+// register before it is complete, and loads are fewer than products.
+//
+// How both widths agree: a number is always made by one lane, with the same fused
+// operations in the same order; lanes are never added up here. Rows that do not fill a
+// vector are made by the scalar twin of the vector code (finish_row) or in a vector
+// whose surplus is not stored.
 #include "basics/simd.h"
 #include "dense_lu.h"
 #include "supernodal_internal.h"
@@ -37,7 +47,8 @@ SIMD_INLINE doublew subtract_product(doublew c, double a, doublew b)
 // A / B with the INVERSE of B at hand: one Newton step,
 //     x = A inverse,  x + (A - x B) inverse,
 // makes it as exact as a division, and it is much sooner done. The same on all
-// processors: each operation is rounded as IEEE 754 says.
+// processors: each operation is rounded as IEEE 754 says. B of 0 gives NAN, where a
+// division may give an infinite number.
 SIMD_INLINE doublew divided(doublew a, double b, double inverse)
 {
     const doublew nearly = a * splat(inverse);
@@ -46,7 +57,7 @@ SIMD_INLINE doublew divided(doublew a, double b, double inverse)
 
 // ---- lanes through a supernode ------------------------------------------------------
 
-// The lanes of the Ith row of SUPER.
+// The lanes of the Ith row of SUPER. X has PARTS vectors of lanes a row.
 SIMD_INLINE double *lanes_of(const struct supernode *super, int i, int parts, double *x)
 {
     return x + (long)super->row[i] * SIMD_WIDTH * parts;
@@ -57,7 +68,7 @@ enum { MOST = 6 };
 
 // WIDE columns from FIRST on. First the triangle of these columns, whose X stay in
 // registers (`own`), then all rows below lose WIDE products each, in the order of the
-// columns.
+// columns. WIDE and PARTS are constants where it is inlined.
 SIMD_INLINE void forward_columns(const struct supernode *super, int first, int wide,
                                  int parts, double *x)
 {
@@ -168,7 +179,8 @@ static void finish_columns(const struct supernode *super, int first, int end)
 
 // SUM (TILE by the lanes of B) grows by the products of N rows of lanes of A, from the
 // first on, with those of B. TILE columns of A by all lanes of B, in registers over all
-// N rows.
+// N rows. B has PARTS vectors a row. Lanes beyond the columns that count hold 0, so
+// they add 0.
 SIMD_INLINE void add_tile(int n, const double *a, int a_lanes, const double *b,
                           int tile, int parts, double *sum)
 {
@@ -272,7 +284,8 @@ static void multiply_tall(int k, const double *a, int a_stride, const double *pa
 }
 
 // TILE_COLUMNS columns at a time, each (k * TILE_COLUMNS). So the innermost loop reads
-// B number after number, whatever its stride.
+// B number after number, whatever its stride. Places beyond N hold 0. PACKED needs
+// ceil(n / TILE_COLUMNS) TILE_COLUMNS k numbers.
 static void pack(int n, int k, const double *b, int b_stride, double *packed)
 {
     for (int j = 0; j < n; j += TILE_COLUMNS)
@@ -286,7 +299,8 @@ static void pack(int n, int k, const double *b, int b_stride, double *packed)
 }
 
 // Takes as many columns of B as fit into WORK, then tiles of A once for all of these.
-// Where LOWER, tiles wholly above the diagonal are left out.
+// Where LOWER, tiles wholly above the diagonal are left out. WORK (PACKED * k). A tile
+// of C is written once, not added to.
 static void multiply(int m, int n, int k, const double *a, int a_stride,
                      const double *b, int b_stride, double *c, int c_stride, bool lower,
                      double *work)
@@ -307,6 +321,7 @@ static void multiply(int m, int n, int k, const double *a, int a_stride,
 
 #include "dense_lu_kernel.h"
 
+// What vector_kernels() of vector_kernels.h returns on such a processor.
 const struct vector_kernels NAMED(vector_kernels) = {
     .forward_eight = forward_eight,
     .finish_columns = finish_columns,
