@@ -5,6 +5,22 @@
 // Types, units and shapes of what is written come from the schema, and everything that
 // is read has been checked against it, so that a stage can trust what it gets. All
 // functions end the program with one line and the right exit status on failure.
+//
+// How a stage reads and writes:
+//     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
+//     struct packing packing = artifact_get_packing(input);
+//     ...
+//     struct artifact *output = artifact_create("network", invocation.output);
+//     artifact_put_network(output, &network);
+//     artifact_finish(output, &invocation, one_input(input), model);
+//     artifact_close(input);
+//
+// Arrays and texts that are read are the caller's and outlive the artifact; entries of
+// its schema end with it. Memory: a file is mapped, so what it holds takes none until
+// it is read, and artifact_get takes that of the dataset once.
+//
+// For one thread: HDF5 is not to be called from several. Several artifacts may be open
+// at once. The same datasets, put in the same order, give the same bytes.
 #ifndef CRAQUELURE_ARTIFACT_H
 #define CRAQUELURE_ARTIFACT_H
 
@@ -29,7 +45,8 @@ struct artifact {
 };
 
 // Before any other call of HDF5: it keeps silent, and does not write on at an exit what
-// could not be written.
+// could not be written. artifact_open and artifact_create call it; others that use HDF5
+// by themselves must.
 void hdf5_begin(void);
 
 // ---- reading ------------------------------------------------------------------------
@@ -37,6 +54,8 @@ void hdf5_begin(void);
 // Reads PATH ("-": standard input) and checks it against the schema called NAME; NULL
 // takes any known one. Exits 65 when it is not an artifact, of another schema,
 // truncated, or breaks a rule, naming the dataset, the row, the rule and the value.
+// Cost: all datasets are read once for the check, in a child process, since a damaged
+// file may crash the library, and the digest takes another pass.
 struct artifact *artifact_open(const char *path, const char *name);
 void artifact_close(struct artifact *artifact);
 
@@ -53,7 +72,9 @@ bool is_hdf5(const struct bytes *bytes);
 
 // A whole dataset in the memory type of its schema entry (float64: double, int32:
 // int32_t, int64: int64_t, uint8: uint8_t, int8: int8_t). ROWS, if not NULL, gets the
-// first extent. The caller frees it.
+// first extent. The caller frees it. The dataset must be there: ask
+// artifact_has_dataset for an optional one. (rows, ...) row-major, in the shape of the
+// schema; never NULL, also without rows.
 void *artifact_get(const struct artifact *artifact, const char *name, int *rows);
 
 // The rows of a dataset, one after the other: a band of them is held, as high as its
@@ -69,6 +90,8 @@ struct row_reader {
     hsize_t first, held, most; // rows in the band; as many fit into it
     void *band;
 };
+
+// Freed with row_reader_free; ARTIFACT must stay open as long.
 struct row_reader artifact_read_rows(const struct artifact *artifact, const char *name);
 const void *artifact_row(struct row_reader *reader, int row); // until the next call
 void row_reader_free(struct row_reader *reader);
@@ -84,13 +107,14 @@ struct dataset_values {
 struct dataset_values artifact_get_values(const struct artifact *artifact,
                                           const char *name);
 
-// Whether an optional dataset is there.
+// Whether an optional dataset is there. NAME must be one of the schema, else false.
 bool artifact_has_dataset(const struct artifact *artifact, const char *name);
 
 // Whether an optional attribute is there; also false where the schema has no such one.
 bool artifact_has_number(const struct artifact *artifact, const char *name);
 
-// A number from an attribute, "/summary/porosity".
+// A number from an attribute, "/summary/porosity". It must be there: exits 65
+// otherwise. Whole numbers come as doubles.
 double artifact_get_number(const struct artifact *artifact, const char *name);
 
 // A text attribute of the whole artifact, or NULL when there is none: a foreign program
@@ -121,11 +145,15 @@ struct ring_record artifact_get_rings(const struct artifact *artifact);
 // ---- writing ------------------------------------------------------------------------
 
 // An empty artifact of schema NAME, to be written to PATH ("-": standard output), which
-// is not touched before artifact_finish. PATH must last as long.
+// is not touched before artifact_finish. PATH must last as long. The caller ends it
+// with artifact_finish, or by ending the program: then nothing is left of it. Exits 70
+// for a NAME without schema, 73 where no file can be made.
 struct artifact *artifact_create(const char *name, const char *path);
 
 // Writes a whole dataset of ROWS rows; the other extents are those of the schema, where
-// a symbol among them ("n_particle") takes COLUMNS.
+// a symbol among them ("n_particle") takes COLUMNS. DATA in the memory type of the
+// schema entry, row-major; copied. Each dataset once; what the schema does not call
+// optional must be put before artifact_finish. ROWS may be 0.
 void artifact_put(struct artifact *artifact, const char *name, const void *data,
                   int rows);
 void artifact_put_table(struct artifact *artifact, const char *name, const void *data,
@@ -144,12 +172,17 @@ struct row_writer {
     hsize_t written, held; // rows
     void *band;
 };
+
+// Exactly ROWS rows must follow.
 struct row_writer artifact_begin_rows(struct artifact *artifact, const char *name,
                                       int rows, int columns);
 void *artifact_next_row(struct row_writer *writer);
 void artifact_end_rows(struct row_writer *writer);
 
+// NAME as artifact_get_number takes it.
 void artifact_put_number(struct artifact *artifact, const char *name, double value);
+
+// These put /particles, /domain and /bonds; and those with /nodes, /throats and /faces.
 void artifact_put_packing(struct artifact *artifact, const struct packing *packing);
 void artifact_put_network(struct artifact *artifact, const struct network *network);
 

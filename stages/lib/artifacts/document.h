@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Artifacts that are JSON: "schema" names what it is, the schema's "members" say what
 // it must hold. Only presence and type of the first level are checked.
+//
+// Used by stages whose result is small and meant for other programs to read as it is
+// (rings, bridge, crackstats, check), and by those that read any artifact (inspect,
+// artdiff, report). finish_json (artifact.h) adds the provenance.
 #ifndef CRAQUELURE_DOCUMENT_H
 #define CRAQUELURE_DOCUMENT_H
 
@@ -18,7 +22,7 @@ bool is_document(const struct bytes *bytes);
 bool may_be_either(const struct bytes *beginning);
 
 // Reads and checks it; PATH is for messages. Exits 65 when it is not an artifact or
-// breaks its schema. The caller owns it.
+// breaks its schema. The caller owns it. BYTES are only read.
 json_t *document_of(const char *path, const struct bytes *bytes);
 
 // Every member that SCHEMA asks for is there and of its type; else STATUS_BAD_DATA with

@@ -31,7 +31,8 @@ void artifact_put_liquid(struct artifact *artifact,
                          const struct liquid_properties *liquid);
 
 // Gives TOLD the surface tension and contact angle of HAS where they are not known.
-// What neither knows stays NAN: the caller says what must be given.
+// What neither knows stays NAN: the caller says what must be given. Only these two: a
+// stage behind the drying needs no more for its menisci.
 void liquid_complete(struct liquid_properties *told,
                      const struct liquid_properties *has);
 

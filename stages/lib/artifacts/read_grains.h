@@ -10,12 +10,15 @@
 // Grains of PATH: text, FRAME of a LAMMPS dump (-1: the last), or an artifact of SCHEMA
 // (NULL: any that holds a packing). HAS_BOX, if not NULL: whether it says what the box
 // is; else the walls are where the grains end. INPUTS gets what the provenance says of
-// it. Exits 65 and 66. The caller frees the packing.
+// it. Exits 65 and 66. The caller frees the packing. INPUTS: the list for
+// artifact_finish, which gets one entry more. Text and dumps have no bonds, and no
+// unit: see convert_grains.
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
                            bool *has_box, json_t *inputs);
 
 // Lengths that were not in metres: BY is metres per unit. DIAMETERS: the radii are
-// diameters; walls where grains end, unless the file HAS_BOX, then move in.
+// diameters; walls where grains end, unless the file HAS_BOX, then move in. All lengths
+// of PACKING, its box included. Bonds stay.
 void convert_grains(struct packing *packing, double by, bool diameters, bool has_box);
 
 #endif

@@ -3,6 +3,12 @@
 // HDF5 artifacts list datasets and attributes; an entry is a JSON object with "name",
 // "type", "units", and, for a dataset, "shape", whose symbols ("n_particle") stand for
 // equal extents. The texts are compiled in: no file is read at run time.
+//
+// An entry, as it stands in schemas/network.json:
+//     {"name": "/throats/radius", "type": "float64", "units": "m",
+//      "shape": ["n_throat"], "minimum": 0, "text": "..."}
+// A new dataset is a line there, one where it is put and one where it is read; the
+// check of every artifact goes by the same text.
 #ifndef CRAQUELURE_SCHEMA_H
 #define CRAQUELURE_SCHEMA_H
 
@@ -18,8 +24,8 @@ struct schema {
     json_t *attributes; // list of attribute entries, of this schema alone
 };
 
-// The schema called NAME ("packing"), or whose id is NAME; NULL if there is none.
-// The caller frees it with schema_free.
+// The schema called NAME ("packing"), or whose id is NAME; NULL if there is none. The
+// caller frees it with schema_free. O(size of the text): it is parsed on each call.
 struct schema *schema_find(const char *name);
 void schema_free(struct schema *schema);
 
@@ -31,7 +37,8 @@ const json_t *schema_attribute(const struct schema *schema, const char *name);
 // Whether FILE has that dataset or attribute: an "optional" one may be left out.
 bool has_entry(hid_t file, const json_t *entry);
 
-// The HDF5 types of an entry: as it lies in files (little endian), and in memory.
+// The HDF5 types of an entry: as it lies in files (little endian), and in memory. HDF5
+// owns both: they are not to be closed.
 hid_t entry_file_type(const json_t *entry);
 hid_t entry_memory_type(const json_t *entry);
 

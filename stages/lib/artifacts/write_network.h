@@ -7,7 +7,8 @@
 
 // Writes a network artifact, made from INPUT, to the output of the call: summary
 // (coordination, void volume, and the length from before merging if there is one),
-// ParaView view and provenance included. Exits as artifact_finish.
+// ParaView view and provenance included. Exits as artifact_finish. NETWORK is not
+// changed and stays the caller's; INPUT must still be open.
 void write_network(const struct network *network, const struct invocation *invocation,
                    const struct artifact *input, const char *model);
 

@@ -19,7 +19,9 @@ struct barrier {
 // Returns when all SIZE threads have come, at once for one; what they wrote before can
 // be read then. The last to come turns the round over, which lets the others go; they
 // compare with the round that they saw before they came. So a thread that runs ahead
-// into the next wait cannot be mistaken for one of this.
+// into the next wait cannot be mistaken for one of this. All atomic operations are
+// sequentially consistent, so it is a fence, too: what any thread wrote before its
+// wait, all can read after theirs.
 static inline void barrier_wait(struct barrier *barrier)
 {
     enum { PATIENCE = 2000 }; // looks, some microseconds

@@ -4,6 +4,12 @@
 // value and x what is added,
 //     total = fl(s + x),  lost += (larger - total) + smaller,
 // larger and smaller of s and x by size. -ffast-math would drop it all.
+//
+// When to use one: for a sum of many terms that is read on the way (time, evaporated
+// mass, the angle of a group), and for a number whose small differences matter
+// (pressures of pores that are nearly equal). Not for a residual that is made anew each
+// time. Two numbers and about four operations more a term; not safe for several threads
+// on one sum.
 #ifndef CRAQUELURE_COMPENSATED_H
 #define CRAQUELURE_COMPENSATED_H
 

@@ -8,7 +8,8 @@
 #include <stdbool.h>
 
 // The three parts that the kernels use: foundation, doubles and quadwords, vector
-// lengths. Cheap: GCC's runtime found them at the start.
+// lengths. Cheap: GCC's runtime found them at the start. That a processor has AVX2 and
+// FMA is taken for granted where the program was compiled for them.
 static inline bool has_avx512(void)
 {
 #if defined __x86_64__

@@ -17,7 +17,8 @@ static inline int set_root(int *parent, int i)
 }
 
 // Makes the sets of A and B one, whose root is the lower of the two. By lowest member,
-// not by size: a little slower in the worst case, but the root has a meaning.
+// not by size: a little slower in the worst case, but the root has a meaning. Nothing
+// happens if they are one already.
 static inline void unite_sets(int *parent, int a, int b)
 {
     a = set_root(parent, a);

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whole files, in and out.
+//
+// Reading is for regular files, pipes and devices alike; writing leaves the old file or
+// the new one, whatever ends the program. All functions end the program with one line
+// and the status named, so that no caller needs a branch for a full disk. Paths are
+// used as given: "-" is a stream only where it says so.
 #ifndef CRAQUELURE_FILE_H
 #define CRAQUELURE_FILE_H
 
@@ -14,7 +19,9 @@ struct bytes {
 
 // All of PATH, or of standard input for "-"; of a pipe or device the beginning where
 // the first byte is 0, as of nothing that we read. Exits 66 when there is no such file,
-// 74 when reading fails. The caller frees it by bytes_free.
+// 74 when reading fails. The caller frees it by bytes_free. A file that is cut short by
+// another program while it is mapped ends this one (74). Exits 64 where standard input
+// is a terminal.
 struct bytes read_whole(const char *path);
 void bytes_free(struct bytes *bytes);
 
@@ -45,18 +52,20 @@ void name_of_descriptor(int descriptor, char name[DESCRIPTOR_NAME]);
 
 // Exits 73 at once, before any work, when the folder of PATH is not there or closed to
 // us, or what is at PATH cannot be replaced: a folder, a link that leads nowhere.
+// Whether the disk has room is not known then.
 void check_output(const char *path);
 
-// A device or a FIFO: nothing to rename over, nor to come back to.
+// A device or a FIFO: nothing to rename over, nor to come back to. Also false where
+// nothing is there.
 bool is_device(const char *path);
 
 // Whether what is written to one would replace the other, however they are spelt.
 bool is_same_place(const char *a, const char *b);
 
-// SHA-256 as 64 hexadecimal digits, as sha256sum prints it.
+// SHA-256 as 64 hexadecimal digits, as sha256sum prints it. DIGEST ends with a null.
 void sha256(const void *data, size_t size, char digest[65]);
 
-// The name to use in messages.
+// The name to use in messages. PATH itself or a static text.
 const char *input_name(const char *path);
 
 #endif

@@ -7,7 +7,8 @@
 
 #include <stddef.h>
 
-// COUNT zeroed elements of SIZE bytes; never NULL, also for COUNT = 0.
+// COUNT zeroed elements of SIZE bytes; never NULL, also for COUNT = 0. A product beyond
+// size_t counts as out of memory, here and in reallocate.
 void *allocate(size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 
@@ -31,7 +32,8 @@ void *reallocate(void *old, size_t count, size_t size)
 // for functions without effect, and drops the calls, unless they are inlined at once.
 #define PREFETCHING static inline __attribute__((always_inline)) void
 
-// COUNT elements of SIZE bytes copied from SOURCE, which may be NULL for none.
+// COUNT elements of SIZE bytes copied from SOURCE, which may be NULL for none. Never
+// NULL, also for none.
 void *duplicate(const void *source, size_t count, size_t size)
     __attribute__((malloc, returns_nonnull, warn_unused_result));
 

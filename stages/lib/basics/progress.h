@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A progress bar with the time left, on standard error.
+//
+// A stage calls _begin once, _update as often as it likes, _end before it prints
+// anything. It reads the clock, so it must not decide anything in the computation. For
+// one thread.
 #ifndef CRAQUELURE_PROGRESS_H
 #define CRAQUELURE_PROGRESS_H
 

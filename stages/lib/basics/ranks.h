@@ -14,7 +14,8 @@
 void rank_descending(const double *value, int n, int *order, bool *same);
 
 // A set of numbers below N, kept as bits, bits for words of bits, and so on: adding and
-// taking the lowest cost a few operations whatever the size.
+// taking the lowest cost a few operations whatever the size. Memory: N bits and a
+// sixty-fourth more; N below 2^31.
 struct rank_queue {
     int n_level;
     uint64_t *level[6]; // the last has one word
@@ -22,6 +23,8 @@ struct rank_queue {
 
 // An empty one. The caller frees it with rank_queue_free.
 struct rank_queue rank_queue_init(int n);
+
+// 0 <= RANK < N. One that is in it already stays once.
 void rank_queue_add(struct rank_queue *queue, int rank);
 
 // Removes the lowest and returns it; -1 if there is none.

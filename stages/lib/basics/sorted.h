@@ -21,7 +21,8 @@ static inline int rising_doubles(const void *a, const void *b)
 }
 
 // Where the first of N sorted numbers is that is not below WANTED; N: none is. Binary
-// search, O(log n). Of equal numbers the first one.
+// search, O(log n). Of equal numbers the first one. SORTED (n) rises, equal numbers
+// allowed.
 static inline int first_not_below(const int *sorted, int n, int wanted)
 {
     int low = 0, high = n;

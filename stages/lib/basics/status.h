@@ -3,6 +3,13 @@
 //
 // Physics never prints and never exits: it returns a status and leaves the reason in
 // the caller's struct. Only the layers that talk to the user call die().
+//
+// How a status goes up, from physics to main:
+//     const enum status status = find_cells(packing, &grains, &cells, reason);
+//     if (status) return status;
+// and there: if (status) die(status, "%s", reason.text). The reason says the dataset or
+// key, the row, the rule, the value and what to do; die puts the program's name before
+// it. Only 0 is success. The numbers are those of sysexits.h, but for 1 and 3.
 #ifndef CRAQUELURE_STATUS_H
 #define CRAQUELURE_STATUS_H
 

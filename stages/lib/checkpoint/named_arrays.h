@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays of numbers by name: what the state of a run is kept as. An artifact holds each
 // as a dataset; who reads one says which type, length and range it must have.
+//
+// How a state is read back:
+//     struct array_reader reader = {list, reason, false};
+//     const double *time = read_array(&reader, "time", ARRAY_FLOAT64, 1, 0, 1e150);
+//     const int32_t *bond = read_array(&reader, "bond", ARRAY_INT32, n, -1, n_bond -
+//     1); if (reader.failed) return STATUS_BAD_DATA;
+// A file may have been changed by anyone, so ranges are those outside of which a number
+// could lead the program outside of its arrays. For one thread.
 #ifndef CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
 #define CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
 
@@ -12,8 +20,8 @@
 
 enum array_type { ARRAY_FLOAT64, ARRAY_INT32, ARRAY_INT64, ARRAY_UINT8 };
 
-// One array. Longer names are cut. Numbers are in the byte order of the machine; the
-// file format takes care of the rest.
+// One array. Longer names are cut, and then not found by the whole name. Numbers are in
+// the byte order of the machine; the file format takes care of the rest.
 struct named_array {
     char name[32]; // "pair_shear_force"
     enum array_type type;
@@ -36,6 +44,7 @@ struct named_array named_array_init(const char *name, enum array_type type,
                                     int64_t count);
 
 // Adds a copy of the COUNT numbers of DATA to LIST; does not look for the name there.
+// COUNT of 0 is an array, too: find_array finds it.
 void add_array(struct array_list *list, const char *name, enum array_type type,
                int64_t count, const void *data);
 // Frees COUNT arrays and ARRAY itself, which may be NULL.
@@ -65,7 +74,7 @@ struct array_reader {
 };
 
 // The numbers called NAME if they are COUNT, each from LEAST to MOST; otherwise NULL.
-// They stay the list's.
+// They stay the list's. REASON then has the first failure, not the last.
 const void *read_array(struct array_reader *reader, const char *name,
                        enum array_type type, int64_t count, double least, double most);
 

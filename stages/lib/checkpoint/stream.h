@@ -3,6 +3,18 @@
 // one function, which writes when a state is kept and reads when one is gone on from,
 // so that the two cannot differ. What follows from the network and the conditions, or
 // is room to work in, is not in it.
+//
+// A part of the state is one function, here for an array that grows:
+//     void parts_state(struct parts *parts, struct checkpoint_stream *stream)
+//     {
+//         int64_t n = parts->n;
+//         parts->at = stream_room(stream, parts->at, &n, sizeof *parts->at);
+//         parts->n = (int)n;
+//         stream_numbers(stream, parts->at, n);
+//         stream_integers(stream, parts->owner, n_owner, -1, parts->n - 1);
+//     }
+// The count goes first, as what follows is read by it. Bounds of indices may use counts
+// that have been passed already, so an index that was read never leaves its array.
 #ifndef CRAQUELURE_CHECKPOINT_STREAM_H
 #define CRAQUELURE_CHECKPOINT_STREAM_H
 
@@ -30,7 +42,8 @@ struct checkpoint_stream {
 // What a run goes on from, kept or restored by the same calls: NAME_state(..., STREAM)
 // writes what NAME has, or reads it. The caller frees with stream_free; LIST must live
 // as long. The lists have PREFIX_numbers, PREFIX_integers and PREFIX_bytes. Three types
-// are kept apart because each becomes one array of an artifact.
+// are kept apart because each becomes one array of an artifact. Where LIST lacks one of
+// the three, or has it in another type, it counts as empty, and the first read fails.
 struct checkpoint_stream stream_to_keep(void);
 struct checkpoint_stream stream_to_restore(const struct array_list *list,
                                            const char *prefix);
@@ -51,11 +64,13 @@ void stream_long(struct checkpoint_stream *stream, int64_t *at); // 0 to 2^53
 
 // ARRAY, with N elements of SIZE bytes, is written next: makes room for as many as are
 // read (up to 2^31), and says how many in N. Returns ARRAY, moved or not; a count
-// beyond what the stream holds fails, and asks for no memory.
+// beyond what the stream holds fails, and asks for no memory. Keeping: ARRAY is
+// returned as it is.
 void *stream_room(struct checkpoint_stream *stream, void *array, int64_t *n,
                   size_t size);
 
-// All is written: the lists for a keeper, which frees them.
+// All is written: the lists for a keeper, which frees them. Copies: STREAM is freed by
+// itself.
 struct array_list stream_list(const struct checkpoint_stream *stream,
                               const char *prefix);
 

@@ -14,7 +14,8 @@
     }
 
 // What a program's parser returns for a KEY it does not know: ARGP_ERR_UNKNOWN unless
-// it is one that all share. Exits on --version, which prints PROGRAM and VERSION.
+// it is one that all share. Exits on --version, which prints PROGRAM and VERSION. For
+// programs that are no stage (artdiff, inspect); stages have stage_begin.
 error_t parse_common_option(int key, struct argp_state *state, const char *program,
                             int version);
 

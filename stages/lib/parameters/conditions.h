@@ -4,6 +4,10 @@
 // it from there. What neither gives is that of the named liquid at the temperature. The
 // macros below are rows of tables: written once, so that a key has the same unit,
 // default and help in each stage that takes it.
+//
+// The order of calls matters: stage_begin (which calls conditions_share) fills the
+// struct, then conditions_complete or _require, once, before any property is read;
+// _describe and _note go by `given`, which that call sets.
 #ifndef CRAQUELURE_CONDITIONS_OF_SCENE_H
 #define CRAQUELURE_CONDITIONS_OF_SCENE_H
 

@@ -3,6 +3,23 @@
 //
 // The table drives everything: parsing and checking of PARAMS.json and --set, the
 // defaults, --help, the JSON Schema (--schema) and so the man page.
+//
+// A stage has a struct, a table of its members, and one line that fills it:
+//     struct example_parameters {
+//         double radius;
+//         int64_t count;
+//     };
+//     #define AT(field) offsetof(struct example_parameters, field)
+//     static const struct parameter table[] = {
+//         {"radius", PARAMETER_NUMBER, "m", NULL, AT(radius), ABOVE(0),
+//          .text = "of the grains"},
+//         {"count", PARAMETER_INTEGER, "1", "1000", AT(count), AT_LEAST(1),
+//          .text = "of grains"},
+//         {0}};
+// What relates two parameters to each other no row can say: a function of the stage
+// checks it afterwards and names the key. A choice is stored as its place in .choices
+// and cast to an enum, so both must have one order. Nothing here is safe for threads;
+// all of it happens before a stage begins to compute.
 #ifndef CRAQUELURE_PARAMETERS_H
 #define CRAQUELURE_PARAMETERS_H
 
@@ -84,14 +101,15 @@ struct parameter {
 // named "comment" are skipped at every level. Returns all effective parameters,
 // defaults filled in; the caller owns the reference and keeps it as long as the struct
 // is used (it holds the texts). Every member of the struct is set, so it need not be
-// cleared before.
+// cleared before. Numbers beyond 1e150 are refused whatever the bound, so that their
+// squares are numbers.
 json_t *parameters_fill(const struct parameter *table, const json_t *section,
                         const char *where, void *parameters);
 
-// Puts "key.path=value" into SECTION; the value is read as JSON, or else as text.
-// Parts of the key between dots may be names: walls.lid.velocity.
-// Exits 64 when there is no "=" or no key, or what is not UTF-8. Whether the key is
-// known and the value fits is for parameters_fill to say.
+// Puts "key.path=value" into SECTION; the value is read as JSON, or else as text. Parts
+// of the key between dots may be names: walls.lid.velocity. Exits 64 when there is no
+// "=" or no key, or what is not UTF-8. Whether the key is known and the value fits is
+// for parameters_fill to say. It replaces what was there, and makes objects on the way.
 void parameters_set(json_t *section, const char *assignment);
 
 // Gives SECTION what it lacks at KEY from OTHER, where that is under the last part of
@@ -104,15 +122,16 @@ bool parameter_may_be_null(const struct parameter *parameter);
 // What the bound asks for, "> 0 m", in TEXT; nothing where there is none.
 const char *parameter_rule(const struct parameter *parameter, char text[80]);
 
-// The JSON Schema (2020-12) of a table; the caller owns it.
+// The JSON Schema (2020-12) of a table; the caller owns it. What it accepts is what
+// parameters_fill accepts, but for what only the stage can check.
 json_t *parameters_schema(const struct parameter *table, const char *stage);
 
 // Appends the table to STREAM as --help shows it: key, default, unit, choices or range,
 // an asterisk for shared ones, text.
 void parameters_print(const struct parameter *table, FILE *stream);
 
-// Sorted keys, no white space, 17 digits: equal parameters give equal bytes.
-// The caller frees the text.
+// Sorted keys, no white space, 17 digits: equal parameters give equal bytes. The caller
+// frees the text. What digests and comparisons of provenance go by.
 char *json_canonical(const json_t *json);
 
 #endif

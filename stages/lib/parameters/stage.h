@@ -4,6 +4,24 @@
 // A stage is a main of this form: stage_begin, open inputs, compute, write the
 // artifact, invocation_free. All that a user can say is in struct invocation and in the
 // stage's own struct.
+//
+// In full, without what is particular:
+//     int main(int argc, char **argv)
+//     {
+//         struct example_parameters parameters;
+//         struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
+//         omp_set_num_threads(invocation.threads);
+//         struct artifact *input = artifact_open(invocation.inputs[0], "packing");
+//         ...
+//         artifact_finish(output, &invocation, one_input(input), model);
+//         artifact_close(input);
+//         invocation_free(&invocation);
+//         return STATUS_OK;
+//     }
+// Who says a parameter, the strongest first: --set, the stage's section in the file of
+// -p, "conditions" of that scene for shared keys, the default. Everything that the user
+// got wrong is told before anything is computed, and outputs are tried before hours of
+// work.
 #ifndef CRAQUELURE_STAGE_H
 #define CRAQUELURE_STAGE_H
 
@@ -50,8 +68,9 @@ struct invocation {
 };
 
 // Parses the command line, reads the parameters, fills the stage's struct PARAMETERS.
-// Exits on --help, --version, --schema, --parameters, and on errors (64, 65, 66).
-// The invocation lasts until invocation_free.
+// Exits on --help, --version, --schema, --parameters, and on errors (64, 65, 66). The
+// invocation lasts until invocation_free. PARAMETERS is filled as the table of STAGE
+// says; texts and names in it belong to the invocation.
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters);
 void invocation_free(struct invocation *invocation);
