@@ -5,8 +5,8 @@
 // equal extents. The texts are compiled in: no file is read at run time.
 //
 // An entry, as it stands in schemas/network.json:
-//     {"name": "/throats/radius", "type": "float64", "units": "m",
-//      "shape": ["n_throat"], "minimum": 0, "text": "..."}
+//     {"name": "/throats/radius", "type": "float64", "shape": ["n_throat"],
+//      "units": "m", "minimum": 0, "text": "radius of the cylinder"}
 // A new dataset is a line there, one where it is put and one where it is read; the
 // check of every artifact goes by the same text.
 #ifndef CRAQUELURE_SCHEMA_H

@@ -21,7 +21,7 @@ struct body {
     struct vector lower, upper; // the box around it, m
 };
 
-// Whether lower is below upper.
+// Whether lower is below upper. False where one is NAN.
 static inline bool body_is_one(const struct body *body)
 {
     const struct vector edge = subtract(body->upper, body->lower);
@@ -34,7 +34,8 @@ bool body_is_round(const struct body *body, int axis);
 // component along the axis for a cylinder or disc, nothing for a box.
 struct vector body_round_part(const struct body *body, struct vector x);
 
-// Whether X lies in it or on its surface.
+// Whether X lies in it or on its surface. Not of `within`: the set of points is that
+// between its surfaces in either case.
 bool body_holds(const struct body *body, struct vector x);
 
 // The part of the line FROM + t (TO - FROM) that lies in it: from t = SPAN[0] to

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fragments: grains that intact bonds join. A fragment is known by its lowest grain; a
 // grain without intact bonds is a fragment of its own.
+//
+// How one is used, as often as bonds break:
+//     fragments_begin(&fragments);
+//     for each intact bond: fragments_join(&fragments, i, j);
+//     fragments_end(&fragments, fixed, NULL);
+// Then of[i] == of[j] tells whether i and j are in one piece, in any order of the
+// bonds. `of` means nothing between begin and end.
 #ifndef CRAQUELURE_FRAGMENTS_H
 #define CRAQUELURE_FRAGMENTS_H
 

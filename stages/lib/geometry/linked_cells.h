@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places sorted into the cells of a grid over a box that may repeat: what lies within
 // WIDTH of a place is in its cell or one of the 26 around it.
+//
+// A look at all places within WIDTH of x, wherever the box repeats:
+//     const int c[3] = {cell_along(&cells, 0, x.x), cell_along(&cells, 1, x.y),
+//                       cell_along(&cells, 2, x.z)};
+//     for each of the 27 cells around c, wrapped where the box repeats, once each:
+//         for (int k = cells.offset[number]; k < cells.offset[number + 1]; k++)
+//             look at place[cells.member[k]], by its nearest image.
+// Trap: along an axis with fewer than three cells the cells around c come twice where
+// it repeats. Made once, it is safe for several threads.
 #ifndef CRAQUELURE_LINKED_CELLS_H
 #define CRAQUELURE_LINKED_CELLS_H
 

@@ -18,7 +18,8 @@ struct spheres {
 
 // All near pairs, each once, lower index first, sorted. Linked cells, one grid for each
 // halving of the reach, so that it is O(count) for spheres of any sizes. *COUNT gets
-// their number; the caller frees the array. The same for any number of threads.
+// their number; the caller frees the array. The same for any number of threads. Never
+// NULL, also for none.
 int32_t (*near_pairs(const struct spheres *all, int *count))[2];
 
 // All pairs of grains whose surfaces are at most GAP times the sum of their radii apart
@@ -29,7 +30,8 @@ int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count)
 // bsearch.
 int compare_pairs(const void *a, const void *b);
 
-// From grain I to grain J, to its nearest image where the box repeats, m.
+// From grain I to grain J, to its nearest image where the box repeats, m. Exactly
+// opposite from J to I, and right wherever the positions lie.
 struct vector nearest_image(const struct packing *packing, int i, int j);
 
 #endif

@@ -28,6 +28,7 @@ struct moving_grains {
 // rest), and that stop what they have of such motion. Those that ARE GONE (NULL: none)
 // have no mass. Grains turn about the centre of mass as points; not about an axis
 // across which the box repeats. Returns what was taken off, but for what stops.
+// O(n_particle). FORCE is changed in place.
 struct net_load take_off_net_load(const struct packing *packing, const bool *is_gone,
                                   const struct moving_grains *now,
                                   struct vector *force);
@@ -58,7 +59,8 @@ double whole_mass(const struct whole *whole, int grain);         // 0 if it is g
 struct vector whole_place(const struct whole *whole, int grain); // from the centre
 
 // What MOMENT turns the grains with, by the principal axes of the inertia: nothing
-// about an axis across which the box repeats, nor for grains in a line about that.
+// about an axis across which the box repeats, nor for grains in a line about that. It
+// is the pseudo-inverse of the inertia tensor times MOMENT, in the units of WHOLE.
 struct vector whole_turn(const struct whole *whole, struct vector moment);
 
 #endif

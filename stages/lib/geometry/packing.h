@@ -2,6 +2,11 @@
 // A packing of spherical grains in a box, with the bonds between them: what packing.h5
 // holds, in memory. Coordinates are those of the artifact: m, from any origin. Grains
 // may stick out of the box.
+//
+// How places are read where the box repeats: a grain is listed once, and any of its
+// images is as good. From one thing to another goes image_apart or nearest_image
+// (neighbours.h), never a difference of positions. Where it does not repeat along an
+// axis, wall 2 axis and 2 axis + 1 stand there, unless a body takes their place.
 #ifndef CRAQUELURE_PACKING_H
 #define CRAQUELURE_PACKING_H
 
@@ -35,7 +40,8 @@ enum grain_kind {
 };
 
 // It owns its arrays. Their rows are those of /particles and /bonds. packing_free frees
-// it, also one that was filled in part.
+// it, also one that was filled in part. A copy of the struct shares the arrays: only
+// one of them may be freed.
 struct packing {
     int n_particle;
     struct vector *position; // (n_particle) m

@@ -64,7 +64,8 @@ struct findings {
 void add_finding(struct findings *findings, enum severity severity, const char *name,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-// Adds to FINDINGS, which may have some, what these facts say, the worst first.
+// Adds to FINDINGS, which may have some, what these facts say, the worst first. Text
+// names keys of pack and check, for the user to change.
 void judge_packing(const struct packing *packing, const struct packing_facts *facts,
                    struct findings *findings);
 

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Solid angles of triangles seen from the origin (A. van Oosterom, J. Strackee, The
 // solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30, 125, 1983).
+//
+// Why no other formula: by spherical excess a narrow triangle loses all of its digits,
+// and arc cosines lose half of them near 0. Here numerator and denominator are sums of
+// products, and one atan2 takes both; angles beyond 2 pi of a polygon come out modulo 4
+// pi.
 #ifndef CRAQUELURE_SOLID_ANGLE_H
 #define CRAQUELURE_SOLID_ANGLE_H
 

@@ -8,7 +8,8 @@
 #include <stdbool.h>
 
 // Volume of a sphere about the origin that lies between LOWER and UPPER, m^3. Closed
-// form; to 1e-14 of the sphere's volume.
+// form; to 1e-14 of the sphere's volume. LOWER and UPPER may be infinite (HUGE_VAL):
+// that side does not cut.
 double sphere_in_box(double radius, struct vector lower, struct vector upper);
 
 // Volume that two spheres share, their centres DISTANCE apart, m^3. Closed form.

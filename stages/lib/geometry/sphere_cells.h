@@ -30,7 +30,8 @@ struct sphere_cells {
 
 // O(n_particle), in time and memory: the more grains overlap, the fewer cells. Grains
 // of kind GRAIN_AUXILIARY are not there. The caller frees it with sphere_cells_free.
-// The packing is copied from, and may be freed before.
+// The packing is copied from, and may be freed before. Then it is only read, by any
+// number of threads.
 struct sphere_cells sphere_cells_init(const struct packing *packing);
 void sphere_cells_free(struct sphere_cells *cells);
 

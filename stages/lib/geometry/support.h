@@ -14,7 +14,7 @@ bool touches_walls(const struct packing *packing, int grain, unsigned walls);
 
 // The lowest grain of those that bonds join to each grain, itself included: equal for
 // two grains of one piece. All bonds of the packing count as intact. (n_particle); the
-// caller frees it.
+// caller frees it. O(n_particle + n_bond), nearly.
 int *bonded_pieces(const struct packing *packing);
 
 // How many grains bonds join to those marked in HOLDS (n_particle), these included.

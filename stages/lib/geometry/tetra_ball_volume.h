@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Spheres and the cells around them: how much of a polyhedral cell lies outside the
 // grain in it.
+//
+// Of a cell around a grain: shift the grain's centre to the origin, cut each face into
+// triangles, counter-clockwise seen from outside, and sum over them. The void of a
+// throat is such a sum over the triangles beside it (network/void_volume.h).
 #ifndef CRAQUELURE_SPHERE_CONE_H
 #define CRAQUELURE_SPHERE_CONE_H
 

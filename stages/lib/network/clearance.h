@@ -60,7 +60,8 @@ static inline struct clear_way clear_of(struct clear_way way, struct vector cent
 // over those and all larger ones of GRAINS. Where the throat touches one already the
 // clearance stays what it is, at most 0. END must be in the box that GRAINS were made
 // for, or not far beyond, in the same unit. O(1) in packings of any sizes. Safe for
-// several threads: GRAINS are only read.
+// several threads: GRAINS are only read. Needs WAY by all grains beside the throat:
+// what it does not search, it takes from there.
 double least_clearance(const struct sphere_cells *grains, const struct vector end[2],
                        struct clear_way way);
 

@@ -37,7 +37,8 @@ struct contact_rings {
 
 // The caller frees RINGS with contact_rings_free, also after a failure.
 // STATUS_BAD_DATA: no two grains share a face (imported networks, layers), or two
-// neighbours in a face's loop are not joined by a throat.
+// neighbours in a face's loop are not joined by a throat. O(n_face + n_part). NETWORK
+// is needed again by the functions below.
 enum status contact_rings_init(const struct network *network,
                                struct contact_rings *rings, struct reason *reason);
 void contact_rings_free(struct contact_rings *rings);
@@ -49,7 +50,7 @@ void contact_rings_free(struct contact_rings *rings);
 // while the suction of the liquid is SUCTION (n_throat) Pa; without a positive suction
 // nothing. *LIMITED counts the throats whose parts limit_parts reduced. OpenMP, the
 // same for any number of threads. STATUS_NOT_CONVERGED: a ring was not found that
-// should be there.
+// should be there. O(n_part), an exact bridge each (bridges/bridges.h).
 enum status ring_volumes(const struct network *network,
                          const struct contact_rings *rings,
                          const struct ring_liquid *liquid, const double *suction,

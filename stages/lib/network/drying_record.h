@@ -22,6 +22,8 @@ void drying_record_free(struct drying_record *record);
 double *full_saturations(const struct network *network);
 
 // Brings SATURATION (n_throat) from the end of the step before to the end of STEP.
+// Steps must be taken one after the other from 0, on what full_saturations gives.
+// O(changes of the step).
 void apply_changes(const struct drying_record *record, int step, double *saturation);
 
 #endif

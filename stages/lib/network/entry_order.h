@@ -12,7 +12,8 @@
 // that whose middle is higher (as any gravity would have it), lower along x, lower
 // along y; at last that with the lowest number, which tells apart only throats that lie
 // in each other. Lengths and places count as equal that differ by less than about 1e-9
-// of the network's extent, volumes by as much of the largest.
+// of the network's extent, volumes by as much of the largest. All throats are in ORDER,
+// those of other kinds, too.
 void order_throats(const struct network *network, const double *entry_priority,
                    int *order);
 

@@ -2,6 +2,19 @@
 // Invasion percolation by itself (Wilkinson & Willemsen 1983): gas comes in through
 // walls, and at each step enters the easiest throat, or node, that it touches. What is
 // entered when, and without clocks, vapour or viscosity what that leaves behind.
+//
+//     struct invasion_conditions conditions = {.rule = INVADE_THROATS,
+//                                              .inlet = WALL_Z_UPPER,
+//                                              .outlet = WALL_Z_LOWER,
+//                                              .trapping = true};
+//     struct invasion invasion;
+//     enum status status = invade(&network, &conditions, &invasion, &reason);
+//     for (int k = 0; k < invasion.n; k++)
+//         gas enters throat invasion.throat[k] and comes to node invasion.node[k];
+//     invasion_free(&invasion);
+// Without gravity a throat of radius r opens at the pressure 2 sigma cos(theta) / r, so
+// the order is that of rising pressures only as far as gas can reach: the k-th event
+// may need less than one before.
 #ifndef CRAQUELURE_NETWORK_INVASION_H
 #define CRAQUELURE_NETWORK_INVASION_H
 

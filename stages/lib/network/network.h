@@ -4,6 +4,21 @@
 // Nodes are Voronoi vertices, throats are Voronoi edges seen as cylinders [K 3.3.4],
 // and faces separate two grains, or a grain from a wall (K's fv and fc, K 3.7). The
 // faces of one grain close around it: its Voronoi cell cut by the box.
+//
+// Loops that come up again and again:
+//     nodes of a face   for (int64_t k = n.face_offset[f]; k < n.face_offset[f + 1];
+//     k++)
+//                           n.face_nodes[k]
+//     its throats       face_throat(&n, &incidence, f, k), from corner k to the next
+//     throats of a node for (int k = in.offset[i]; k < in.offset[i + 1]; k++)
+//     in.throat[k] of a grain        faces f with face_particles[f][0] or [1] equal to
+//     it
+// throat_sides.h has the faces of each throat. Rows are those of the artifact: whoever
+// removes nodes or throats must renumber all that refers to them (compact_nodes of
+// tessellate, merging_finish of merge-nodes).
+//
+// Functions that only read are safe for several threads. A network from another program
+// may lack faces (n_face = 0): what needs them says so.
 #ifndef CRAQUELURE_NETWORK_H
 #define CRAQUELURE_NETWORK_H
 
@@ -87,6 +102,7 @@ struct incidence network_incidence(const struct network *network);
 void incidence_free(struct incidence *incidence);
 
 // The throat from corner K (0 and up) of FACE to the next one in its loop, or -1.
+// O(throats at a node). -1: faces that do not close, as of networks from elsewhere.
 int face_throat(const struct network *network, const struct incidence *incidence,
                 int face, int k);
 
@@ -100,8 +116,8 @@ int impose_empty_throats(struct network *network, unsigned walls);
 // liquid, no vapour and no gas. Returns how many of kind THROAT_NETWORK there were.
 int shut_closed_throats(struct network *network);
 
-// Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L
-// [K 3.3.4].
+// Liquid a full throat holds, m3: what the network says, else the cylinder pi r^2 L [K
+// 3.3.4]. Of any kind of throat; whether it may hold liquid says throat_kind.
 double throat_volume(const struct network *network, int throat);
 
 // Conductance of a throat to diffusion, in units of LENGTH, and to flow, in units of

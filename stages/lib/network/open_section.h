@@ -52,7 +52,9 @@ struct throat_shape {
                              // to diffusion; of a cylinder its radius
 };
 
-// The open area at Z (m from the first node), m2; 0 or below: closed.
+// The open area at Z (m from the first node), m2; 0 or below: closed. area - sum over
+// grains of angle rho^2 / 2 + sum over overlaps of what was counted twice. O(n_grain +
+// n_overlap).
 double open_area(const struct open_section *section, double z);
 
 // Resistances of thin slices in series,

@@ -35,7 +35,7 @@ extern const int facet_corner[4][3];
 // Places the grains of PACKING in GRAINS, with as many copies as needed, and
 // triangulates. STATUS_BAD_DATA: a periodic box is too narrow, or as place_grains. The
 // caller frees CELLS with cells_free and GRAINS with grains_free. Copies reach further,
-// from 2 units on by doubling, until no copy left out could change a cell.
+// from 2 units on by doubling, until no copy left out could change a cell. O(n log n).
 enum status find_cells(const struct packing *packing, struct grains *grains,
                        struct cells *cells, struct reason *reason);
 void cells_free(struct cells *cells);

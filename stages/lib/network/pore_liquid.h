@@ -4,6 +4,14 @@
 // their throats are and how menisci pull follows from the places AT of the grains,
 // which the caller passes each time: (n_particle) m, not brought back into a box that
 // repeats, with the numbers and the images of the packing. SI throughout.
+//
+// In the order of a run, with AT and RADIUS of now at each call:
+//     pore_liquid_init        full of liquid
+//     mark_entered            which pores gas can enter under this suction
+//     let_gas_in              it does; menisci are found again
+//     add_meniscus_forces     in each time step
+//     mark_distorted          pores of which the triangulation says nothing any more
+// The connections never change: a body that flows needs another model.
 #ifndef CRAQUELURE_PORE_LIQUID_H
 #define CRAQUELURE_PORE_LIQUID_H
 
@@ -44,7 +52,8 @@ enum status pore_liquid_init(struct pore_liquid *liquid, const struct packing *p
                              struct reason *reason);
 void pore_liquid_free(struct pore_liquid *liquid);
 
-// Lets gas into the pores that WHICH (n) marks, and finds the menisci again.
+// Lets gas into the pores that WHICH (n) marks, and finds the menisci again. O(n).
+// Nothing is remembered of what the pores held: ask pore_room before.
 void let_gas_in(struct pore_liquid *liquid, const uint8_t *which);
 
 // Finds the menisci again after .has_gas has been changed by hand.
@@ -61,7 +70,9 @@ double throat_radius_at(const struct pore_liquid *liquid, int pore, int facet,
                         const struct vector *at, const double *radius);
 
 // Marks in WHICH (n) the pores that gas can enter from where it is, through a throat of
-// at least LEAST m: not those behind them. Returns how many more are marked.
+// at least LEAST m: not those behind them. Returns how many more are marked. WHICH is
+// added to, not cleared. To follow an invasion: mark, let gas in, mark again, until it
+// returns 0.
 int mark_entered(const struct pore_liquid *liquid, const struct vector *at,
                  const double *radius, double least, uint8_t *which);
 

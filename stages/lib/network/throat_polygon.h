@@ -19,7 +19,8 @@ struct throat_polygon {
 };
 
 // Room for throats with up to MOST sides (throat_sides.most), one for each thread; the
-// caller frees it with throat_polygon_free.
+// caller frees it with throat_polygon_free. One for each thread: it is room to work in,
+// and its section points into it.
 struct throat_polygon throat_polygon_init(int most);
 void throat_polygon_free(struct throat_polygon *polygon);
 

@@ -22,7 +22,8 @@ struct throat_side {
 };
 
 // The sides of all throats; the caller frees them with throat_sides_free.
-// STATUS_BAD_DATA: two neighbours in a face's loop are not joined by a throat.
+// STATUS_BAD_DATA: two neighbours in a face's loop are not joined by a throat. Threads
+// share the work; the result is the same for any number.
 enum status throat_sides_init(const struct network *network, struct throat_sides *sides,
                               struct reason *reason);
 void throat_sides_free(struct throat_sides *sides);

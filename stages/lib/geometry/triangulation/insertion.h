@@ -28,7 +28,7 @@ struct edge {
 
 // It owns CELL, CAVITY, RIM, UNUSED and EDGE; they only grow, and growing moves them:
 // no pointer into CELL outlives a new cell. n_test and n_exact count sphere tests, and
-// those that took exact numbers.
+// those that took exact numbers. `cell` has infinite cells, too, and holes (UNUSED).
 struct insertion {
     const struct weighted_point *point;
     const struct wall_box *box; // NULL: no walls
