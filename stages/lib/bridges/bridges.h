@@ -3,6 +3,20 @@
 // exact solution of Young and Laplace's equation and by the models of [G 2]. Forces are
 // positive when they pull the bodies together. Lengths in m, angles in rad, forces in
 // N; everything is scale-free.
+//
+//     struct bridge bridge = {.radius = {1e-4, INFINITY},      a sphere on a plane
+//                             .contact_angle = {0.3, 0.3},
+//                             .surface_tension = 0.0728,
+//                             .volume = 1e-14};
+//     struct bridge_state state;
+//     enum status status = bridge_solve(&bridge, 1e-6, &state, &reason);
+// A force has the scale surface tension gamma times effective radius r = 2 R1 R2 / (R1
+// + R2): at contact, with little liquid, it is 2 pi gamma r cos(theta).
+//
+// Which one to take: BRIDGE_EXACT for single bridges, and for their suction and shape;
+// a table (bridges/table.h, ratios.h) for many of one angle, as good once it is made; a
+// fit where a paper is to be repeated. Functions here are pure: any number of threads,
+// the same digits.
 #ifndef CRAQUELURE_BRIDGES_H
 #define CRAQUELURE_BRIDGES_H
 
@@ -38,10 +52,12 @@ enum bridge_model {
 // What a force is not good for. It is finite all the same, and continuous but for
 // rupture.
 enum bridge_flag {
-    BRIDGE_RUPTURED = 1,       // beyond the rupture distance of the model
-    BRIDGE_OVERLAPS = 2,       // bodies overlap
-    BRIDGE_ANGLE = 4,          // contact angle beyond what the model was made for
-    BRIDGE_VOLUME = 8,         // volume beyond what the model was made for
+    BRIDGE_RUPTURED = 1, // beyond bridge_rupture_distance
+    BRIDGE_OVERLAPS = 2, // bodies overlap
+    BRIDGE_ANGLE = 4,    // contact angle beyond what models were made for: 50 degrees
+    // Volume, over the cube of the effective radius, beyond what models were made for:
+    // above 0.1; BRIDGE_WILLETT_FULL also below 3e-5
+    BRIDGE_VOLUME = 8,
     BRIDGE_UNEQUAL_ANGLES = 16 // the model has one contact angle: their mean cosine
 };
 
@@ -55,7 +71,8 @@ enum status bridge_check(const struct bridge *bridge, struct reason *reason);
 // Volume over the cube of the effective radius.
 double bridge_dimensionless_volume(const struct bridge *bridge);
 
-// [G 2]; with the mean cosine of two contact angles. m, between the surfaces.
+// [G 2]; with the mean cosine of two contact angles. m, between the surfaces. (1 +
+// theta / 2) (v^(1/3) + 0.1 v^(2/3)) r, v the volume over r^3.
 double bridge_rupture_distance(const struct bridge *bridge);
 
 // The force of a model other than BRIDGE_EXACT and BRIDGE_TABLE at SEPARATION (m;
@@ -101,7 +118,8 @@ enum status bridge_solve_rupture(const struct bridge *bridge,
 
 // The bridge at SEPARATION whose liquid is joined to other liquid of SUCTION (above 0,
 // Pa): VOLUME of BRIDGE is not looked at, but returned in *VOLUME (m3). STATUS_NO: none
-// holds out against that suction there.
+// holds out against that suction there. Its bodies must be those of a bridge; that is
+// not checked.
 enum status bridge_at_suction(const struct bridge *bridge, double separation,
                               double suction, struct bridge_state *state,
                               double *volume, struct reason *reason);

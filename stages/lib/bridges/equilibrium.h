@@ -2,6 +2,12 @@
 // Equilibrium of a bridge: the arc that meets both bodies at their contact angles and
 // encloses a given volume. Lengths are in effective radii [G 1], volumes in their
 // cubes.
+//
+// The branch of equilibria at one volume begins at contact, is stable while the gap
+// grows along it, and turns back at the widest gap; bridges beyond the turning point
+// exist and are not stable. Between equal bodies a second family, without mirror
+// symmetry, may take over before. Functions at a volume start from contact and follow
+// the branch, so many bridges cost less together (follow_branch).
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 

@@ -57,7 +57,8 @@ struct contact_line {
 };
 struct contact_line contact_line(const struct bodies *bodies, int which, double reach);
 
-// In units of the bodies (see their curvatures).
+// In units of the bodies (see their curvatures). Also of an arc that is no equilibrium:
+// MISS says by how much.
 struct span span_of(const struct bodies *bodies, const struct arc *arc);
 
 // The force over 2 pi times surface tension: y cos(psi) + H y^2, the same all along

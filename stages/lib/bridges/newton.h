@@ -44,6 +44,7 @@ struct system {
 struct system system_at(const struct problem *problem, const struct unknowns *unknowns);
 
 // Gauss' elimination: RIGHT becomes the solution. Returns the determinant; 0: singular.
+// MATRIX is overwritten.
 double eliminate(double matrix[ARC_NUMBERS][ARC_NUMBERS], double right[ARC_NUMBERS]);
 
 // FROM + SHARE times STEP.

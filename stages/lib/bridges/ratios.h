@@ -9,6 +9,9 @@
 // 0 between equal grains, 0.97 at 1 to 20, 1 on a plane. The cube root is what makes
 // forces smooth: where equal grains rupture by a break of symmetry, slightly unequal
 // ones do so at a gap that is shorter by the power 2/3 of the difference.
+//
+// Made once for the sizes of a scene, then asked for as many forces as wanted by any
+// number of threads: nothing in it changes.
 #ifndef CRAQUELURE_BRIDGE_RATIOS_H
 #define CRAQUELURE_BRIDGE_RATIOS_H
 

@@ -41,7 +41,7 @@ struct bridge_ratios {
 };
 
 // The first of the six tables about an interval. At the ends of the range the same six
-// serve several intervals.
+// serve several intervals. Of RATIOS tables, 0 to RATIOS - STENCIL.
 static inline int first_of_stencil(int interval)
 {
     const int first = interval - STENCIL / 2 + 1, most = RATIOS - STENCIL;

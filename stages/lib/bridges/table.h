@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The exact force of a bridge at the price of a fit: one kind of pair (contact angles,
 // ratio of radii) tabulated over volume and separation.
+//
+// One table for one kind of pair, however large it is: lengths are in effective radii.
+// So equal grains of all sizes share a table, and so do grain and plane; pairs of other
+// ratios need tables of their own, or ratios.h. Once it is made it is only read, by any
+// number of threads.
 #ifndef CRAQUELURE_BRIDGE_TABLE_H
 #define CRAQUELURE_BRIDGE_TABLE_H
 
@@ -36,7 +41,8 @@ double bridge_table_error(const struct bridge_table *table);
 // taken as its first or last.
 double bridge_table_force(const struct bridge_table *table, double volume, double gap);
 
-// The same for COUNT of each.
+// The same for COUNT of each. The same bytes as one by one, and faster: four go through
+// the arithmetic together.
 void bridge_table_forces(const struct bridge_table *table, int count,
                          const double *volume, const double *gap, double *force);
 

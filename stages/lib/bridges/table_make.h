@@ -10,7 +10,9 @@
 // polynomials through these oscillate least.
 double chebyshev_node(int k, int count);
 // Interpolates VALUE at COUNT of them, at most TURNING_ORDER; gives the coefficients of
-// powers. VALUE at the nodes in their order.
+// powers. VALUE at the nodes in their order. By the discrete cosine transform of the
+// values, then from Chebyshev's polynomials to powers; POWER (COUNT), the constant
+// first.
 void fit_polynomial(const double *value, int count, double *power);
 
 // F (1 + a/C)^2 at the ORDER nodes of all places in zeta, for one volume, with A and C

@@ -17,6 +17,10 @@
 //       table 11-1, D ~ T^1.75 / p: within 8 % of what was measured here, but for
 //       acetone.
 //   air: viscosity by Sutherland's equation, US Standard Atmosphere (1976).
+//
+// A value is NAN rather than wrong: each correlation ends where its source ends. To add
+// a liquid, add it to the enum, to FLUID_CHOICES in the same order, and a row to the
+// table of fluids.c; docs/fluids.md compares it with other sources.
 #ifndef CRAQUELURE_FLUIDS_H
 #define CRAQUELURE_FLUIDS_H
 

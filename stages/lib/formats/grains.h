@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains of other makers: text, and dumps of LAMMPS. Packings have no bonds, and all
 // grains are solid.
+//
+// TEXT is only read, and need not end with a null. Numbers are taken as they stand:
+// metres, radii and so on are for read_grains and convert_grains
+// (artifacts/read_grains.h), which every stage calls.
 #ifndef CRAQUELURE_GRAINS_H
 #define CRAQUELURE_GRAINS_H
 

@@ -6,6 +6,14 @@
 // first at the contact: six components, in axes of the pair. Each is answered by a load
 // of its own (normal force, two shear forces, torsion, two bending moments), but for
 // slip, which ties both shear forces to the normal force.
+//
+// With n, t1, t2 the axes, x and w translations and rotations, a the arms [K 4.7, 4.15,
+// 4.17]:
+//     d[NORMAL]  = n . (x_j - x_i)            > 0 where the grains part
+//     d[SHEAR], d[SHEAR + 1]                  along t1, t2, of the contact point
+//     d[TORSION], d[BENDING], d[BENDING + 1]  = n, t1, t2 . (w_j - w_i)
+// In short d = B u, and what resists acts on the grains as -B^T load. All functions are
+// pure but those that say which array they change.
 #ifndef CRAQUELURE_CONTACT_PAIR_H
 #define CRAQUELURE_CONTACT_PAIR_H
 

@@ -6,6 +6,16 @@
 // loads of such pairs. Their deformations e = B K^-1 r - W q(e), W = B K^-1 B^T, depend
 // on these pairs only: a small dense system, solved by a semismooth Newton method, and
 // where that fails with the help of nonlinear Gauss-Seidel sweeps.
+//
+// A round of its use, for a factor that stays:
+//     contact_solver_add        pairs whose law is no longer their tangent's
+//     stiffness_begin           the residual as a load
+//     contact_solver_solve      q of these pairs; false: make a new factor
+//     contact_solver_subtract   takes B^T q off
+//     stiffness_finish          the step of all grains
+//     contact_solver_clear      after stiffness_factor
+// A row costs one forward solve on its reach, W of m rows m^2 products of these, a
+// solution O(m^3) for each matrix of Newton's method. Rows stay until they are cleared.
 #ifndef CRAQUELURE_CONTACT_SOLVER_H
 #define CRAQUELURE_CONTACT_SOLVER_H
 
@@ -29,6 +39,8 @@ void contact_solver_clear(struct contact_solver *solver);
 struct pair_rows {
     int32_t pair, count;
 };
+
+// On false those that fit are there.
 bool contact_solver_add(struct contact_solver *solver, int count,
                         const struct pair_rows *new);
 int contact_solver_count(const struct contact_solver *solver); // of rows

@@ -32,7 +32,8 @@ struct contact_pair grain_pair(const struct contact_pair_setup *setup, int i, in
 struct contact_pair wall_pair(const struct contact_pair_setup *setup, int i);
 
 // A new array of *COUNT, or NULL for none, that the caller frees: bonds first, in their
-// order.
+// order. Then near grains without a bond, then grains near the wall: the order fixes
+// that of all sums.
 struct contact_pair *make_contact_pairs(const struct contact_pair_setup *setup,
                                         int *count);
 

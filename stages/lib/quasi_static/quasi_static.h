@@ -14,6 +14,17 @@
 // fragment (grains joined by intact bonds) that nothing holds leaves where it would
 // move by more than a tenth of the mean radius or finds no rest: it has no load any
 // more, and nothing touches it. Its flight, and what it would hit, is for lib/dem.
+//
+//     struct quasi_static *qs;
+//     enum status status = quasi_static_create(&qs, &setup, &reason);
+//     for (int row = 0; row < n_load && !status; row++) {
+//         status = quasi_static_solve(qs, force[row], &reason);
+//         quasi_static_displacements(qs, displacement);
+//     }
+//     quasi_static_free(qs);
+// What SETUP points to is kept, not copied, and must live as long. The state depends on
+// all loads before: history is that of friction and of bonds that broke. Rates do not
+// come in; times of loads are the caller's. An engine is for one thread.
 #ifndef CRAQUELURE_QUASI_STATIC_H
 #define CRAQUELURE_QUASI_STATIC_H
 
@@ -45,6 +56,7 @@ struct quasi_static_setup {
 struct quasi_static;
 
 // The caller frees *RESULT with quasi_static_free. STATUS_BAD_DATA: nothing resists.
+// *RESULT is NULL then.
 enum status quasi_static_create(struct quasi_static **result,
                                 const struct quasi_static_setup *setup,
                                 struct reason *reason);
@@ -52,7 +64,8 @@ void quasi_static_free(struct quasi_static *qs);
 
 // The next equilibrium, under FORCE (n_particle) N, with the history of those before.
 // STATUS_NOT_CONVERGED: displacements of what is held are not small; or if they may be
-// large, equilibrium ends at a limit point and dynamics finds no rest.
+// large, equilibrium ends at a limit point and dynamics finds no rest. FORCE is read
+// during the call only.
 enum status quasi_static_solve(struct quasi_static *qs, const struct vector *force,
                                struct reason *reason);
 
@@ -79,6 +92,9 @@ void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
                            struct vector *force, struct vector *moment);
 // The forces from outside that count (n_particle) N; what was taken off is returned.
 struct net_load quasi_static_load(const struct quasi_static *qs, struct vector *force);
+
+// Mean |residual| of grains that move over mean |force| of pairs [K 4.20]; 0 where
+// nothing is left, 1 where no pair carries anything.
 double quasi_static_unbalanced_ratio(const struct quasi_static *qs);
 
 int quasi_static_iterations(const struct quasi_static *qs); // so far

@@ -20,7 +20,8 @@ struct local_problem {
 bool return_map(const struct contact_pair *pair, const struct local_problem *problem,
                 double x[3]);
 
-// Solves three equations MATRIX answer = RIGHT, in place. False: singular.
+// Solves three equations MATRIX answer = RIGHT, in place. False: singular. RIGHT
+// becomes the answer; MATRIX is overwritten.
 bool solve_three(double matrix[3][3], double right[3]);
 
 #endif

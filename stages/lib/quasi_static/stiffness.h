@@ -19,7 +19,8 @@ struct stiffness;
 // For N grains, of which those FIXED (n) do not move, and N_PAIR pairs, which are kept,
 // not copied, and whose grains must stay the same. Pairs that RESIST (n_pair; NULL:
 // all) make its pattern; the others never have a tangent. The caller frees it with
-// stiffness_free. Fixed grains have no unknowns.
+// stiffness_free. Fixed grains have no unknowns. The pattern costs O(n_pair log n_pair)
+// and an analysis by CHOLMOD; memory is that of the factor.
 struct stiffness *stiffness_create(int n, const uint8_t *fixed, int n_pair,
                                    const struct contact_pair *pair, const bool *resist);
 void stiffness_free(struct stiffness *stiffness);
@@ -55,6 +56,8 @@ void stiffness_finish(struct stiffness *stiffness, struct displacement *answer);
 struct unit_load {
     int32_t pair, component;
 };
+
+// LOAD (groups). What a wall or a fixed grain would get is left out.
 void stiffness_forward_solves(struct stiffness *stiffness, int groups, const int *count,
                               const struct unit_load (*load)[BATCH],
                               struct forward_solves *solves);

@@ -5,6 +5,16 @@
 // limit and the failure are the caller's. With f = G(x) - x the next x is x + f - sum_k
 // c_k dG_k, c by least squares so that sum_k c_k df_k is nearest to f (anderson.c). Any
 // units, if those of all unknowns are alike: the norm adds them up.
+//
+//     anderson_begin(&anderson, n);
+//     do {
+//         step_i = G(x)_i - x_i;               the caller's
+//         size = norm of step;
+//         anderson_step(&anderson, step);
+//         x_i += step_i;
+//     } while (size > tolerance && count++ < most);
+// A step costs O(n ANDERSON_DEPTH). Not safe for threads; G may use some. A step that
+// is much larger than the last one drops all that is remembered.
 #ifndef CRAQUELURE_ANDERSON_H
 #define CRAQUELURE_ANDERSON_H
 

@@ -19,7 +19,8 @@ struct anderson_normal {
                [ANDERSON_NORMAL_DEPTH]; // products of residual changes
 };
 
-// For N unknowns and DEPTH steps. The caller frees it with anderson_normal_free.
+// For N unknowns and DEPTH steps. The caller frees it with anderson_normal_free. DEPTH
+// at most ANDERSON_NORMAL_DEPTH. Room: 2 (DEPTH + 1) N numbers.
 struct anderson_normal anderson_normal_init(int n, int depth);
 void anderson_normal_free(struct anderson_normal *anderson);
 

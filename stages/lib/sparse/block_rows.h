@@ -3,6 +3,16 @@
 // inverses of its diagonal blocks as a preconditioner. Blocks below the diagonal are
 // not kept: they are those above, transposed. Rows are filled and kept in any order:
 // best in one in which neighbours follow each other.
+//
+// How it is filled, in the order given:
+//     for (int k = 0; k < n; k++) {
+//         for each column j that row order[k] has, itself included:
+//             double *block = block_rows_at(&rows, j);
+//             if (block) add to block[0..8], row by row
+//         block_rows_end_row(&rows);
+//     }
+// A block of two rows is filled with the one that comes first, and asked for again with
+// the other, so that each row knows its columns.
 #ifndef CRAQUELURE_BLOCK_ROWS_H
 #define CRAQUELURE_BLOCK_ROWS_H
 

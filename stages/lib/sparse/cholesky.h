@@ -21,7 +21,8 @@ enum status cholesky_create(const struct conductance_matrix *matrix,
 void cholesky_free(struct cholesky *cholesky);
 
 // Solves for B (n) into X (n); false when out of memory. X is taken to be 0 at sites
-// where it is given, as in conductance_matrix.h.
+// where it is given, as in conductance_matrix.h. O(numbers in the factor). For one
+// thread at a time.
 bool cholesky_solve(struct cholesky *cholesky, const double *b, double *x);
 
 #endif

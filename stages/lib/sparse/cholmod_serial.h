@@ -43,7 +43,7 @@ static inline void add_entry(cholmod_triplet *entries, int row, int column,
 }
 
 // The sparse matrix of ENTRIES, which it frees. The caller frees it with
-// cholmod_free_sparse.
+// cholmod_free_sparse. O(entries). NULL: out of memory.
 static inline cholmod_sparse *take_matrix(cholmod_common *common,
                                           cholmod_triplet *entries)
 {

@@ -4,6 +4,14 @@
 // as compensated sums and corrected again and again (iterative refinement): each
 // correction is solved to a few digits, while the residual is computed with all of
 // them. So flows keep their digits where potentials are nearly equal.
+//
+// The loop that a caller writes; the first correction is nearly the solution:
+//     conductance_matrix_residual(&matrix, given, x, residual);
+//     for (int k = 0; size_of(residual) > tolerance && k < most; k++)
+//         status = linear_correct(&linear, given, x, residual, 1e-3, &iterations,
+//         reason);
+// Where the residual does not fall any more, rounding of the flows is reached: that is
+// the caller's failure to tell.
 #ifndef CRAQUELURE_LINEAR_SOLVER_H
 #define CRAQUELURE_LINEAR_SOLVER_H
 

@@ -40,7 +40,8 @@ struct supernodal {
 };
 
 // Solves within SUPER: its part of X (n) becomes that of L^-1 X, and the rows below
-// lose its contribution.
+// lose its contribution. X in the order of the factor; SUPER and those below it in the
+// tree come in ascending order.
 void forward_through(struct supernodal *factor, const struct supernode *super,
                      double *x);
 

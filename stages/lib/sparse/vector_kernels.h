@@ -43,7 +43,7 @@ static inline const struct vector_kernels *vector_kernels(void)
 
 // The same for four lanes, row i at x[4 i]; the products fill four columns of SUM. One
 // version serves all processors. Four columns are one vector of AVX2; AVX-512 would
-// gain nothing.
+// gain nothing. X (4 n).
 void forward_four(const struct supernode *super, double *x);
 void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
                          double sum[BATCH][BATCH]);

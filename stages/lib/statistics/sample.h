@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Statistics of samples: confidence intervals, and whether two groups differ.
+//
+// Samples point to the caller's arrays, which are only read. p is the probability of
+// what was seen, or of more, if there were no difference. Rank tests of small samples
+// without ties are counted exactly; `exact` says so.
 #ifndef CRAQUELURE_SAMPLE_H
 #define CRAQUELURE_SAMPLE_H
 

@@ -13,6 +13,7 @@ struct pair_frame {
     double arm[2];
 };
 
+// The axes and arms that PAIR has now; set_frame gives it others.
 struct pair_frame frame_of(const struct contact_pair *pair);
 void set_frame(struct contact_pair *pair, const struct pair_frame *frame);
 
