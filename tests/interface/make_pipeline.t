@@ -68,8 +68,6 @@ planned() { make -n run SCENE=$scene | sed -n 's/.* stage=\([^ ]*\).*/\1/p' | xa
 settled()
 {
     is "$1: make -q" 0 "$(make -q run SCENE=$scene >/dev/null 2>&1; echo $?)"
-    is "$1: make -n plans nothing" "make: Nothing to be done for 'run'." \
-        "$(make -n run SCENE=$scene 2>&1)"
     is "$1: nothing runs again" "" "$(ran)"
 }
 
@@ -78,6 +76,8 @@ is 'make -n before: all stages' "$all" "$(planned)"
 is 'make -n makes nothing' "" "$(ls build/runs 2>/dev/null)"
 is 'the first run runs all stages' "$all" "$(ran)"
 settled 'after the first run'
+is 'after the first run: make -n plans nothing' "make: Nothing to be done for 'run'." \
+    "$(make -n run SCENE=$scene 2>&1)"
 
 touch $scene
 settled 'touched scene'
@@ -292,6 +292,8 @@ for name in 'a b' "it's" 'a;touch PWN;' 'a#b' 'a(b' 'a)b' 'a:b' 'a=b' 'a\b' 'a%b
     'a`touch PWN`' 'a$(touch PWN)' 'a$(shell touch PWN)' 'a&touch PWN' $'a\ntouch PWN' \
     "a';touch PWN;'" 'a>PWN' 'a*' 'a{b,c}'; do
     refused SCENE "samples/$name.json" -n
+done
+for name in 'a b' 'a$(touch PWN)' 'a`touch PWN`' $'a\ntouch PWN'; do
     refused IMPORT "$name.txt" -n SCENE=$scene
 done
 for variable in SCENE IMPORT RUNS BUILD NAME; do

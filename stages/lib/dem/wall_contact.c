@@ -211,7 +211,8 @@ static void touch_wall(struct dem *dem, struct wall_pair *pair)
     const struct wall_geometry contact =
         wall_geometry(dem, pair->particle, pair->wall, 0);
     const bool touches = contact.overlap >= 0, wet = walls_are_wet(dem);
-    if (!touches && !wet && !pair->acts && !(pair->depth > 0)) { // as it was
+    const bool was_apart = !pair->acts && !(pair->depth > 0);
+    if (!touches && was_apart && !wet && !dem->balance_energy) { // nothing else changes
         pair->depth = contact.overlap;
         return;
     }
