@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What can be dried, under which conditions, and the units it is computed in.
+//
+// What is 0 or NULL is off: gravity, knudsen, kelvin, rings, snapshots, start. Numbers
+// that are not given do not exist here: dry/parameters.h has filled them in.
 #ifndef CRAQUELURE_CONDITIONS_H
 #define CRAQUELURE_CONDITIONS_H
 

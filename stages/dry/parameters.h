@@ -2,6 +2,9 @@
 // The parameters of dry. The table reads into `given` (what several stages share) and
 // into `conditions`; what depends on the network, or on another parameter, is filled in
 // afterwards by complete_conditions. NAN: not given.
+//
+// Order of use: stage_begin with dry_table; complete_conditions once the network is
+// read; give_radii and shutting of throats before anything is made from radii (main.c).
 #ifndef CRAQUELURE_DRY_PARAMETERS_H
 #define CRAQUELURE_DRY_PARAMETERS_H
 

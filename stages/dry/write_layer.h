@@ -13,7 +13,7 @@
 
 // Writes its columns, their exchange areas and links to ARTIFACT, in metres, as
 // dry_network had them. Ends the program on failure. NETWORK and CONDITIONS must be
-// those of the run.
+// those of the run. The layer is made again, since the run keeps only its scaled one.
 void put_boundary_layer(struct artifact *artifact, const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_history *history);

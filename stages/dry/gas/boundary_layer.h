@@ -62,7 +62,8 @@ void boundary_feet_mark(const struct network *network, int wall,
 //
 // STATUS_BAD_DATA: no node for a column; a wall that is not there because the box
 // repeats; too many levels to number. The caller frees LAYER with boundary_layer_free,
-// also after a failure.
+// also after a failure. About O(exposed nodes) where they are spread evenly. A wet
+// surface evaporates its area over the thickness.
 enum status boundary_layer_init(const struct network *network, int wall, double length,
                                 double thickness, const struct boundary_form *form,
                                 struct boundary_layer *layer, struct reason *reason);

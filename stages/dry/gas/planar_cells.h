@@ -23,7 +23,8 @@ struct planar_cells {
 
 // POINT are N distinct points in the rectangle, however close. Edges too narrow to tell
 // from rounding are left out. About O(n) for points spread evenly, also along one line.
-// The caller frees the result with planar_cells_free.
+// The caller frees the result with planar_cells_free. Each cell is clipped by itself,
+// in coordinates from its own point: small cells keep their digits.
 struct planar_cells planar_cells_init(const struct planar *point, int n,
                                       const struct planar_region *region);
 

@@ -26,7 +26,7 @@ struct vapour {
 // 0 links on large fronts are floats. Lengths are in units of LENGTH (m), conductances
 // are area over length in these units. Throats of radius KNUDSEN_RADIUS (m) have half
 // the diffusivity, narrower ones less; 0: no Knudsen effect. The caller frees the
-// result with vapour_free.
+// result with vapour_free. The levels of LAYER are eliminated here, once.
 struct vapour vapour_init(const struct network *network, double length,
                           double knudsen_radius, const struct boundary_layer *layer,
                           double tolerance);

@@ -32,7 +32,8 @@ void equilibrated_follow(struct equilibrated_menisci *equilibrated,
 void equilibrated_forget(struct equilibrated_menisci *equilibrated);
 
 // Finds the potentials at which the bodies with kelvin->zero_flux evaporate nothing,
-// and what all bodies evaporate then. False if memory ran out.
+// and what all bodies evaporate then. False if memory ran out. Once is enough, as
+// evaporation is linear in the potentials; refinement removes rounding.
 bool solve_zero_flux(struct kelvin_menisci *kelvin, const struct occupancy *occupancy);
 
 void equilibrated_free(struct equilibrated_menisci *equilibrated);

@@ -8,6 +8,7 @@
 #include "kelvin_menisci.h"
 
 // Lists the bodies and their shares for the OCCUPANCY of now. O(throats at wet nodes).
+// Places of bodies are valid until the next listing.
 void kelvin_list_bodies(struct kelvin_menisci *kelvin, struct occupancy *occupancy);
 
 // What gravity adds to the potential at each wet node, for the exponents of the bodies.

@@ -8,7 +8,7 @@
 #include "kelvin_menisci.h"
 
 // Sets kelvin->evaporation of each body and kelvin->rate into the air, both scaled,
-// from kelvin->potential. Below 0 where vapour condenses.
+// from kelvin->potential. Below 0 where vapour condenses. O(links of the wet nodes).
 void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
                              const struct occupancy *occupancy);
 

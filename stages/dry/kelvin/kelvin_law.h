@@ -3,6 +3,12 @@
 //
 // The potential -ln(1 - p_v/p_g), scaled to 0 above a flat meniscus and 1 in the drying
 // air, rises with the exponent p_c M / (rho R T) by which the vapour pressure falls.
+//
+// With x the exponent, p_v = p_sat exp(-x) and
+//     potential(x) = ln(1 + p_sat (1 - exp(-x)) / (p_g - p_sat)) / drop,
+//     drop = ln(1 + (p_sat - p_inf) / (p_g - p_sat)).
+// Below 0 a meniscus bulges, and its vapour is above saturation. In wide throats x is
+// tiny: log1p and expm1 keep its digits.
 #ifndef CRAQUELURE_KELVIN_LAW_H
 #define CRAQUELURE_KELVIN_LAW_H
 

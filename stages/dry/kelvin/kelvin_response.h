@@ -14,7 +14,8 @@ void find_response_bounds(struct kelvin_viscous *coupling,
                           const struct occupancy *occupancy);
 
 // Sets flow->response at the present exponents: where liquid flows easily, menisci
-// change together with their cluster, else alone.
+// change together with their cluster, else alone. An estimate: it sets how fast the
+// fixed point converges, not where to.
 void set_responses(struct kelvin_viscous *coupling, const struct occupancy *occupancy);
 
 #endif

@@ -44,7 +44,8 @@ struct kelvin_viscous kelvin_viscous_init(struct kelvin_menisci *kelvin,
 // Sets LOSSES to what each throat loses, or takes up (negative), in ascending throats,
 // for the OCCUPANCY of now.
 //
-// STATUS_NOT_CONVERGED if flow and vapour are not found.
+// STATUS_NOT_CONVERGED if flow and vapour are not found. Anderson's acceleration first,
+// then Newton's method with differences; both have a limit.
 enum status kelvin_viscous_find(struct kelvin_viscous *coupling,
                                 struct occupancy *occupancy, struct losses *losses,
                                 struct reason *reason);

@@ -3,6 +3,10 @@
 // rows of a symmetric, positive semidefinite matrix. It is sparse, for most links are
 // throats. It is the Schur complement of the dry nodes in the vapour's balances, summed
 // over the wet nodes of each body.
+//
+// In code order, S_ab = sum over wet nodes k of part_ak air_conductance_k part_bk
+//     + sum over links (k, l) of c_kl (part_ak - part_al) (part_bk - part_bl):
+// as differences of parts, so that a link inside one body adds exactly 0.
 #ifndef CRAQUELURE_SCHUR_ROWS_H
 #define CRAQUELURE_SCHUR_ROWS_H
 

@@ -51,7 +51,8 @@ struct clusters {
 
 // All throats of kind THROAT_NETWORK hold liquid, all nodes join, no menisci yet. Gas
 // enters throats as order_throats says for ENTRY_PRIORITY (n_throat; NULL: their
-// radii). Keeps NETWORK and INCIDENCE, which must live as long. O(n log n).
+// radii). Keeps NETWORK and INCIDENCE, which must live as long. O(n log n). The caller
+// frees it with clusters_free.
 struct clusters clusters_init(const struct network *network,
                               const struct incidence *incidence,
                               const double *entry_priority, bool gas_parts);

@@ -16,7 +16,8 @@ double corner_area(double half_angle, double contact_angle);
 
 // The resistance beta to flow along the corner (Ransohoff and Radke 1988): under the
 // pressure gradient G the mean velocity is G r^2 / (beta mu). No slip at the walls, no
-// shear at the meniscus. To 1e-5.
+// shear at the meniscus. To 1e-5. Solves a Poisson equation on two grids: to be found
+// once, not in a loop.
 double corner_resistance(double half_angle, double contact_angle);
 
 // The flow through a corner of length L between menisci of radii r and s is this times

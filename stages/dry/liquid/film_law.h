@@ -15,7 +15,9 @@ struct film_law {
     double step; // fall of the saturation until flows are found again; 0: every event
 };
 
-// CONDITIONS must have passed check_conditions; their rings are RINGS_FILMS.
+// CONDITIONS must have passed check_conditions; their rings are RINGS_FILMS. The angles
+// of all corners are alike; where contact angle and half angle leave no film,
+// CONDUCTANCE is 0.
 struct film_law film_law_of(const struct drying_conditions *conditions,
                             const struct drying_scale *scale);
 

@@ -25,7 +25,8 @@ struct losses losses_init(int n_throat);
 
 // Shares what the wet nodes evaporate among the throats with liquid beside them, in
 // proportion to their cross-sections, and finds with FLOW the loss of each throat.
-// STATUS_NOT_CONVERGED as liquid_flow_find.
+// STATUS_NOT_CONVERGED as liquid_flow_find. O(throats with liquid beside wet nodes),
+// and the flow.
 enum status losses_find(struct losses *losses, struct occupancy *occupancy,
                         struct liquid_flow *flow, struct reason *reason);
 

@@ -18,7 +18,8 @@ struct ring_stores {
 
 // For NETWORK under CONDITIONS; LENGTH (m) is the unit. The caller frees it with
 // ring_stores_free, also after a failure. Statuses as contact_rings_init and
-// ring_volumes.
+// ring_volumes. Possible before the run because gas enters a throat at the suction of
+// its own meniscus, whatever happens elsewhere.
 enum status ring_stores_init(const struct network *network,
                              const struct drying_conditions *conditions, double length,
                              struct ring_stores *stores, struct reason *reason);

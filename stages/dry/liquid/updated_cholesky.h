@@ -22,7 +22,7 @@ struct updated_cholesky *updated_cholesky_create(cholmod_common *common,
                                                  const struct cluster_laplacian *graph);
 void updated_cholesky_free(struct updated_cholesky *factor);
 
-// Notes that the link at ENTRY has changed; the next _follow applies it.
+// Notes that the link at ENTRY has changed; the next _follow applies it. O(1).
 void updated_cholesky_note(struct updated_cholesky *factor, int entry);
 
 // Applies all changes of GRAPH since the last call, or factorises. False if that

@@ -13,6 +13,16 @@
 // Everything here is in SI units. Inside, lengths are scaled by the mean throat length
 // and vapour by its driving force, so that the same network at another scale gives the
 // same dimensionless result.
+//
+//     struct drying_history history;
+//     enum status status = dry_network(&network, &conditions, NULL, &history, &reason);
+//     for (int k = 0; !status && k < history.n_step; k++)
+//         history.saturation[k] at history.time[k]
+//     drying_history_free(&history);
+// The saturation of all throats at a step is found by adding the changes of all steps
+// up to it (profiles.c, network/drying_record.h). Conditions must be complete: names of
+// liquids are looked up before (dry/parameters.h). The same input gives the same bytes,
+// on any number of threads.
 #ifndef CRAQUELURE_DRYING_H
 #define CRAQUELURE_DRYING_H
 
@@ -99,7 +109,9 @@ struct drying_progress {
 // STATUS_NOT_CONVERGED: rates too small for the arithmetic to dry anything.
 //
 // Cost of an event: the square of the wet nodes that see each other through the gas, at
-// most; the rest goes with those it changes, and with what is recorded.
+// most; the rest goes with those it changes, and with what is recorded. STATUS_BAD_DATA
+// also for a keeper where vapour_tolerance is above 0 or there are rings: such a state
+// cannot be kept.
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,

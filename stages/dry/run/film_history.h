@@ -23,7 +23,7 @@ struct film_history *film_history_create(void);
 void film_history_free(struct film_history *films);
 
 // Adds a step, the state of TIMES now. RATE (kg/s) and the unit of length of the
-// occupancy scale it.
+// occupancy scale it. O(n_node).
 void film_history_add(struct film_history *films, const struct emptying_times *times,
                       unsigned open_walls, double rate);
 

@@ -18,6 +18,7 @@ struct recorder {
 };
 
 // Starts HISTORY, which is overwritten. It is complete after each recorder_add_step.
+// HISTORY must live as long as the recorder, which has nothing to free.
 struct recorder recorder_init(struct drying_history *history);
 
 // A step's changes come before the step itself, ascending in throats. SATURATION from 0

@@ -27,7 +27,8 @@ struct ring_history {
 };
 
 // Takes the changes of rings (n_throat + node) out of those of HISTORY, into
-// HISTORY->rings, together with the rings of STORES, whose unit is LENGTH (m).
+// HISTORY->rings, together with the rings of STORES, whose unit is LENGTH (m). Of the
+// run the changes of nodes have the numbers n_throat + node. Once, at the end.
 void ring_history_take(struct drying_history *history, const struct network *network,
                        const struct ring_stores *stores, double length);
 void ring_history_free(struct ring_history *rings);

@@ -2,6 +2,11 @@
 // The state of a run, and what its three kinds of step share. For the files of this
 // folder only; others call dry_network (drying.h). All is scaled (struct drying_scale)
 // but the history.
+//
+// An event in code order: rates from the vapour, losses of throats, the time to the
+// first that has emptied (or filled, or changed by saturation_step), gas into what has
+// emptied, the record. Which of the three steps does it depends on the conditions
+// alone: Kelvin first, else viscous, else inviscid or immobile.
 #ifndef CRAQUELURE_RUN_H
 #define CRAQUELURE_RUN_H
 
@@ -100,8 +105,9 @@ enum status refuse_standstill(const struct run *run, struct reason *reason);
 enum status note_idle(struct run *run, bool idle, struct reason *reason);
 
 // Advance the run by one event: liquid without viscosity, or immobile; viscous liquid;
-// Kelvin effect, where run->losses must be those of now.
-// STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
+// Kelvin effect, where run->losses must be those of now. STATUS_NOT_CONVERGED: nothing
+// evaporates any more, or the flow is not found. O(what changes); each ends with all
+// parts in agreement, so that a state may be kept there.
 enum status drying_step_inviscid(struct run *run, struct reason *reason);
 enum status drying_step_viscous(struct run *run, struct reason *reason);
 enum status drying_step_kelvin(struct run *run, struct reason *reason);
