@@ -2,6 +2,11 @@
 // Two-way capillarity: gas enters the pores of a layer from above while its grains move
 // and its bonds break. Menisci pull at the grains where they are, and throats are as
 // wide as grains have left them (network/pore_liquid.h).
+//
+// Units are SI, times are counts of time steps of the engine. A step of the load has
+// ROUNDS rounds by evaporation: gas enters, the suction moves to what the narrowest of
+// the throats needs, grains follow for ROUND time steps. Between two entries forces
+// follow the grains, connections do not.
 #ifndef CRAQUELURE_DEM_REPLAY_CAPILLARITY_H
 #define CRAQUELURE_DEM_REPLAY_CAPILLARITY_H
 

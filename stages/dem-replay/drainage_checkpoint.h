@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of a drainage as named arrays, beside that of the replay
 // (replay_checkpoint.h).
+//
+// Both take the same arrays in the same order, with the names that stand at the top of
+// drainage_checkpoint.c. What follows from the packing (pores, their first volumes) is
+// not among them: restore needs a drainage that drainage_begin has made.
 #ifndef CRAQUELURE_DRAINAGE_CHECKPOINT_H
 #define CRAQUELURE_DRAINAGE_CHECKPOINT_H
 

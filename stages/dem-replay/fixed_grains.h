@@ -18,6 +18,8 @@ struct fixed_grains {
 // *IS_HELD (n_particle) becomes 1 for each fixed grain and 0 elsewhere; the caller
 // frees it. STATUS_BAD_DATA, with the key in the reason, and nothing allocated: a grain
 // that does not exist, only one corner of a region, or an upper corner below the lower.
+// Touching is to 1e-6 of the radius, or beyond the wall. Nothing given: no grain is
+// held.
 enum status find_fixed_grains(const struct packing *packing,
                               const struct fixed_grains *held, uint8_t **is_held,
                               struct reason *reason);

@@ -11,7 +11,8 @@ bool is_packing(const struct artifact *input);
 
 // The load of INPUT, which must stay open: forces or a packing. Ends the program with
 // status 65 where a packing has nothing to do, or grains shrink by a liquid that is not
-// there. The caller frees it with free_load.
+// there. The caller frees it with free_load. Rows are read from the file when a replay
+// asks for them: one band of rows is in memory.
 struct load read_load(const struct artifact *input,
                       const struct replay_parameters *parameters, int n_particle);
 void free_load(struct load *load);

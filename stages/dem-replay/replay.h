@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Capillary forces replayed on the bonded grains, step after step [K 5.2].
+//
+// In short: for each row of the load the engine brings the body to rest under it, and
+// what has happened is noted in a response. main.c makes load and settings from
+// artifacts and parameters; replay itself reads no file and prints nothing.
 #ifndef CRAQUELURE_REPLAY_H
 #define CRAQUELURE_REPLAY_H
 

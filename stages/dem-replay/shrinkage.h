@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Drying shrinkage: by which linear strain each grain, with its bonds, has become
 // smaller at each step of the load (dem/shrinkage.c has what it does).
+//
+// With t = 1 - saturation, w the dryness, b the width of the front over the height h of
+// the body, and m the mass of liquid around a grain, strain = shrinkage.strain w:
+//     uniform   w = t
+//     front     w = ((1 + b) t - (z_top - z) / h) / b, cut off at 0 and 1
+//     liquid    w = 1 - m / m_most
 #ifndef CRAQUELURE_DEM_REPLAY_SHRINKAGE_H
 #define CRAQUELURE_DEM_REPLAY_SHRINKAGE_H
 

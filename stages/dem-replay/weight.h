@@ -15,7 +15,8 @@ struct weighing {
     const double *liquid; // (n_particle) kg around each grain before drying; NULL: none
 };
 
-// The weight of each grain (n_particle) N. The caller frees it.
+// The weight of each grain (n_particle) N. The caller frees it. density gravity (4/3)
+// pi R^3; >= 0.
 double *grain_weights(const struct weighing *of);
 
 // What stands on the grains before drying begins (n_particle) N: their weight and that
@@ -23,7 +24,9 @@ double *grain_weights(const struct weighing *of);
 struct vector *standing_weight(const struct weighing *of);
 
 // With the LARGEST force (N) on a grain at any time, without any weight of grains; 0:
-// there is none; and the SUCTION that forces come from, Pa; 0: unknown.
+// there is none; and the SUCTION that forces come from, Pa; 0: unknown. Of a grain:
+// mean weight over LARGEST. Of the body: what stands on its base, per area, over
+// SUCTION.
 struct bond_numbers find_bond_numbers(double largest, double suction,
                                       const struct weighing *of);
 

@@ -10,7 +10,8 @@
 // Puts cracks, history, contacts and snapshots into a response artifact. PACKING must
 // be that of the replay, with its bonds; the caller adds the weight (put_weight), the
 // engine's state and the provenance, and finishes the artifact. Ends the program on
-// failure. LOAD gives cracks and snapshots their times.
+// failure. LOAD gives cracks and snapshots their times. Memory: tables of snapshots by
+// pairs, (n_snapshot, n_contact).
 void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);
