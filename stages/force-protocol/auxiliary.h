@@ -9,7 +9,7 @@
 #include <stddef.h>
 
 // PACKING without auxiliary grains and their bonds; the others keep their order. The
-// caller frees it with packing_free.
+// caller frees it with packing_free. Bonds get the new numbers.
 struct packing without_auxiliary(const struct packing *packing);
 
 // Copies to TO the values, of SIZE bytes each, of the grains of PACKING that are not

@@ -31,7 +31,8 @@ enum status drying_rings_init(const struct network *network,
                               struct reason *reason);
 void drying_rings_free(struct drying_rings *rings);
 
-// PULL (n), N: of each ring now. OpenMP, the same for any number of threads.
+// PULL (n), N: of each ring now. OpenMP, the same for any number of threads. O(parts of
+// all rings).
 void drying_rings_pull(const struct drying_rings *rings,
                        const struct liquid_loads *liquid, double *pull);
 

@@ -26,7 +26,8 @@ void interpolation_free(struct interpolation *interpolation);
 
 // Measures all moments between the times ROW - 1 and ROW of the protocol, with the
 // forces FORMER and FORCE (n_particle) at these: at all steps of the drying, on both
-// sides where forces jump. ROW from 1 on, one after the other.
+// sides where forces jump. ROW from 1 on, one after the other. Costs the forces of the
+// steps between both times.
 void interpolation_follow(struct interpolation *interpolation,
                           const struct vector *former, const struct vector *force,
                           int row);

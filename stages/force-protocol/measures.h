@@ -13,7 +13,7 @@ struct measures {
 };
 
 // Takes the forces of the next time into account (n_particle) N, and those of the time
-// before; NULL at the first.
+// before; NULL at the first. O(n_particle).
 void measure_forces(struct measures *measures, const struct packing *packing,
                     const struct vector *force, const struct vector *former);
 

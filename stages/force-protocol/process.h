@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Everything that determines the forces of one run.
+//
+// Bundled because everything that makes forces needs all four: protocol.h (row by row),
+// times.h (which rows), interpolation.h (how good they are). All must live as long as
+// what is made from them.
 #ifndef CRAQUELURE_PROCESS_H
 #define CRAQUELURE_PROCESS_H
 

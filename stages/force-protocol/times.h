@@ -12,7 +12,8 @@ double *uniform_times(const struct drying_record *record, int count);
 // by more than BOUND, relative to the largest force on any grain at any time. A jump,
 // where pressures jump or two times of the drying are equal, is one change whatever its
 // size. COUNT is how many are needed; returns NULL if that is more than MOST. The
-// caller frees them.
+// caller frees them. Walks the whole drying twice: for the largest force, then for the
+// times.
 double *adaptive_times(const struct process *process, double bound, int most,
                        double *count);
 
