@@ -14,7 +14,9 @@ struct junctions {
 };
 
 // The junctions of a pattern, found on the map of columns, so angles are no finer than
-// these allow. All 0 where there is no pattern. O(columns + corners^2).
+// these allow. All 0 where there is no pattern. O(columns + corners^2). Three borders
+// that meet evenly give 120 degrees and count as Y, a border that ends at the side of
+// another gives 180 and counts as T.
 struct junctions find_junctions(const struct columns *columns,
                                 const struct polygons *polygons);
 

@@ -15,8 +15,8 @@ struct orientation {
 };
 
 // Adds the bonds of RUN, by their inclination to z from 0 to 90 degrees. Class 0 is
-// upright, along z. Cracks between coincident grains have no direction and are left
-// out (their bonds count as upright). O(bonds + cracks).
+// upright, along z. Cracks between coincident grains have no direction and are left out
+// (their bonds count as upright). O(bonds + cracks). n and -n are one direction.
 void add_orientation(struct orientation *orientation, const struct run *run);
 
 #endif

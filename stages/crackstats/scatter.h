@@ -31,7 +31,8 @@ void squares_add(struct squares *squares, const struct counts *run,
 
 // Standard deviation (n - 1) of the counts of RUNS runs, two or more, from their SUM
 // and the sum of their SQUARES. Counts are multiples of 1/2, so both sums are exact and
-// their difference has no rounding error.
+// their difference has no rounding error. sqrt((n sum of squares - sum^2) / (n (n -
+// 1))), 0 exactly where all runs are alike.
 double counts_deviation(double sum, double squares, int runs);
 
 #endif

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Redistribution of liquid in a network whose throats have changed their volumes.
+//
+// Per cluster: surplus = sum over its throats of (liquid - saturation times new
+// volume). It is what must find other throats, or is missing.
 #ifndef CRAQUELURE_DEFORM_LIQUID_H
 #define CRAQUELURE_DEFORM_LIQUID_H
 

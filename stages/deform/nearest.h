@@ -20,7 +20,8 @@ struct places places_init(const struct packing *packing, int n,
 void places_free(struct places *places);
 
 // The index of the place nearest to FROM, the lowest of equals; -1 if there is none.
-// O(1) for evenly spread places; right for any others. Safe for several threads.
+// O(1) for evenly spread places; right for any others. Safe for several threads. By
+// rings of cells, until the next ring is farther than the best so far.
 int nearest_place(const struct places *places, struct vector from);
 
 #endif

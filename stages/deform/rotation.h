@@ -21,7 +21,7 @@ struct rotation {
 
 // The rotation with the largest ALONG [Horn, J. Opt. Soc. Am. A 4 (1987) 629], as a
 // quaternion. The identity if it is not unique, to 1e-6, as for directions along one
-// line or without any.
+// line or without any. Never a reflection.
 struct rotation find_rotation(const struct products *sum);
 
 // X turned by TURN about the origin; as long as before.

@@ -17,7 +17,7 @@ struct imposed {
 
 // CONDITIONS in the units of the computation, for a fluid of VISCOSITY (Pa s).
 // STATUS_BAD_DATA: two conditions on one wall, or one on a periodic side. The reason
-// names the key.
+// names the key. A pressure stays in Pa, a flux Q becomes Q viscosity / unit^3.
 enum status find_conditions(const struct grains *grains, const struct imposed *imposed,
                             double viscosity, struct conditions *conditions,
                             struct reason *reason);

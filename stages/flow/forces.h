@@ -18,7 +18,9 @@ struct forces {
 // The force on a wall is that of the fluid inside. Over all grains and walls the forces
 // sum to 0, or in a periodic box to minus the mean gradient times the volume of the
 // box. The caller frees with forces_free. The mean pressure is over the volumes of the
-// throats.
+// throats. O(throats). With drop p_i - p_j, normal n, sectors and fluid part of the
+// facet: pressure sector_k (p_i - p_j) n on corner k [C 14], viscous A^f (p_i - p_j) n
+// shared by surfaces [C 17, 18].
 struct forces find_forces(const struct grains *grains, const struct cells *cells,
                           const struct throats *throats,
                           const struct pressures *pressures);

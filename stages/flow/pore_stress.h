@@ -12,11 +12,11 @@ struct pore_stress {
     double mean_viscous[6]; // over the fluid, Pa
 };
 
-// Viscosity times twice the mean rate of strain of each pore: by Gauss' theorem
-// 1/V sum (u n + n u) over its facets, since the fluid sticks to the grains, with u
-// along the normal n of each facet and of the wall through which the pore is fed. This
-// leaves out slip along facets. Inflow equals outflow, so the trace vanishes. Grains
-// and walls must be at rest. The caller frees with pore_stress_free.
+// Viscosity times twice the mean rate of strain of each pore: by Gauss' theorem 1/V sum
+// (u n + n u) over its facets, since the fluid sticks to the grains, with u along the
+// normal n of each facet and of the wall through which the pore is fed. This leaves out
+// slip along facets. Inflow equals outflow, so the trace vanishes. Grains and walls
+// must be at rest. The caller frees with pore_stress_free. O(throats).
 struct pore_stress find_pore_stress(const struct grains *grains,
                                     const struct cells *cells,
                                     const struct throats *throats,

@@ -26,7 +26,9 @@ struct flow {
 };
 
 // Writes FLOW, in SI units, to an artifact of schema flow; the caller finishes it.
-// docs/flow.md and schemas/flow.json say what the datasets are.
+// docs/flow.md and schemas/flow.json say what the datasets are. Of several cells that
+// are one pore, what belongs to the pore stands at the first; the others have 0, so
+// that sums over rows are right.
 void put_flow(struct artifact *artifact, const struct flow *flow);
 
 // Writes the total force on each grain, growing from 0 over STEPS times one second

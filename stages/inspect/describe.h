@@ -7,6 +7,7 @@
 
 // Attributes, summary, and of every dataset: name, type, shape, units, minimum,
 // maximum, SHA-256 of its values (little endian, in file order). The caller owns it.
+// Reads all datasets, one after the other.
 json_t *describe_artifact(const struct artifact *artifact);
 
 // One dataset as nested lists, as deep as its rank; NAME with or without its first

@@ -15,10 +15,11 @@ struct rings_left {
 };
 
 // Joined rings have the highest pressure so far, and drain as it rises. Where gas was
-// from the start rings are joined ones only. WEIGHT: of the liquid, N/m3,
-// by which suction grows with height; 0 with RINGS_JOINED. The caller frees LEFT with
+// from the start rings are joined ones only. WEIGHT: of the liquid, N/m3, by which
+// suction grows with height; 0 with RINGS_JOINED. The caller frees LEFT with
 // rings_left_free, also after a failure. Statuses as contact_rings_init and
-// ring_volumes.
+// ring_volumes. Joined rings are found at some suctions and interpolated between them;
+// isolated ones each by itself.
 enum status rings_left_init(const struct network *network,
                             const struct outcome *outcome, enum ring_supply supply,
                             const struct ring_liquid *liquid, double weight,

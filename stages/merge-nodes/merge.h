@@ -39,7 +39,7 @@ struct merge_report {
 // theirs. Cylinders stay cylinders of their radius and length; they overlap most where
 // throats are short [K 3.3.7], so merging takes away what they count twice.
 //
-// O(n log n). NETWORK is changed in place.
+// O(n log n). NETWORK is changed in place. REPORT is overwritten.
 void merge_nodes(struct network *network, enum merge_measure measure, double threshold,
                  struct merge_report *report);
 

@@ -9,7 +9,8 @@
 
 // Places, groups, contacts at the moments of BODY and the history at the rows of
 // COURSE; returns {"fields": [...], "charts": [...]} for the script. RUN must have a
-// motion, BODY and COURSE be made from it. The caller owns the JSON.
+// motion, BODY and COURSE be made from it. The caller owns the JSON. Arrays are those
+// that motion.c lists at its top.
 json_t *put_motion(struct arrays *arrays, const struct run *run,
                    const struct course *course, const struct shown_body *body);
 

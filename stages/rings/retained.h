@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The liquid that stays in a packing as rings, at a suction: one ring at each contact,
 // and in each gap that a bridge can stand in, all joined to liquid of that suction.
+//
+//     struct ring_sites sites = sites_of(&packing, suction[0], tension);
+//     for (int k = 0; k < n; k++)
+//         status = retain(&packing, &sites, &liquid, suction[k], &retained, &reason);
+//     sites_free(&sites);
+// trace(pull) / 3 over the volume of the box is the stress by which rings press the
+// grains together. MEETING above 0 tells where the picture of single rings ends.
 #ifndef CRAQUELURE_RINGS_RETAINED_H
 #define CRAQUELURE_RINGS_RETAINED_H
 

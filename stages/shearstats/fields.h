@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fields in each cell, from the sums of one or more snapshots.
+//
+// Sums of snapshots, blocks or threads may be added before, not fields: quotients of
+// sums are no sums. fields.c has the formula of each field; field_kinds.h its place and
+// unit.
 #ifndef CRAQUELURE_SHEARSTATS_FIELDS_H
 #define CRAQUELURE_SHEARSTATS_FIELDS_H
 

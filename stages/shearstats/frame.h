@@ -23,7 +23,8 @@ struct place {
 };
 
 // On the axis, where r has no direction, any direction across it serves: what is spread
-// there has r = 0.
+// there has r = 0. The directions are r, the angle, z: right-handed, with the axis as
+// the third.
 static inline struct place place_of(const struct frame *frame, struct vector x)
 {
     if (!frame->cylindrical)

@@ -11,7 +11,8 @@ struct over_runs {
     double mean, standard_error, half_width;
 };
 
-// Over the values (N) that are not NAN. CONFIDENCE in (0, 1), say 0.95.
+// Over the values (N) that are not NAN. CONFIDENCE in (0, 1), say 0.95. standard_error
+// = deviation / sqrt(n), half_width = t(n - 1) times that.
 struct over_runs over_runs(const double *value, int n, double confidence);
 
 #endif

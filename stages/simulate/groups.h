@@ -16,7 +16,7 @@
 // there. VELOCITY (n_particle) m/s, from the packing; NULL: grains begin at rest. A
 // group's own initial velocity, if given, replaces it. The arrays are SCENE's, freed by
 // scene_free also after a failure. The key of the offending group stands first in
-// REASON.
+// REASON. O(groups n_particle).
 enum status read_groups(const struct simulate_parameters *parameters,
                         const struct packing *packing, const struct vector *velocity,
                         struct scene *scene, struct reason *reason);

@@ -26,7 +26,8 @@ void outcome_free(struct outcome *outcome);
 // diverged, or grains crushed into each other; STATUS_BAD_DATA: an impossible scene or
 // a checkpoint of another. SCENE is not const because its number of threads is set;
 // results do not depend on THREADS.  A run that goes on from KEEPER's state gives the
-// same bytes as one that never stopped.
+// same bytes as one that never stopped. What is due is recorded at the cycle nearest to
+// its moment, so times in the record are those of cycles.
 enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
                       const struct vector *force, int threads,
                       void (*tell)(void *context, double fraction), void *context,

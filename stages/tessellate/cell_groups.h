@@ -19,7 +19,8 @@ struct cell_groups {
 };
 
 // Also writes the group of each cell to triangulation->node, -1 for none. The caller
-// frees the result with cell_groups_free. O(cells).
+// frees the result with cell_groups_free. O(cells). Each group may be looked at by a
+// thread of its own.
 struct cell_groups group_cells(const struct generators *generators,
                                struct triangulation *triangulation);
 void cell_groups_free(struct cell_groups *groups);

@@ -17,7 +17,8 @@ struct nodes {
 // Gives each cell with a grain among its corners its node: fills triangulation->node
 // and ->image, and NODES in the order of the grains they lie between. Nodes that
 // coincide on a wall are one, and so are copies of each other. STATUS_BAD_DATA when a
-// periodic box is too narrow. The caller frees with nodes_free.
+// periodic box is too narrow. The caller frees with nodes_free. COMPLETE false is no
+// failure: the caller takes more images and starts again (diagram.c).
 enum status find_nodes(const struct generators *generators,
                        struct triangulation *triangulation, struct nodes *nodes,
                        struct reason *reason);

@@ -8,7 +8,8 @@
 
 // Faces between grains that STAY (n_particle) and a cell beyond face one wall: of those
 // that cut that cell, the one most nearly along the sum of their area vectors. Their
-// nodes get the bit of that wall. In a LAYER the walls y do not count.
+// nodes get the bit of that wall. In a LAYER the walls y do not count. Trap: these
+// nodes have the bit of a wall that they do not lie on.
 void face_walls(struct network *network, const bool *stay, bool layer);
 
 // If there are auxiliary grains, throats with no other grain beside them get the kind

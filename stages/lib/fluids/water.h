@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Water, from 273.16 K to 373.15 K: the equations of IAPWS (fluids.h names the
+// Water, from 273.15 K to 383.15 K: the equations of IAPWS (fluids.h names the
 // releases), each of a temperature in K. Density and viscosity are those at 0.1 MPa.
 // The range is not checked here: fluid_value does. Other liquids are in fluids.h, which
 // calls this for water.
