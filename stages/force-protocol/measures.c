@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With forces f_i at x_i, m the middle of the box, and arms a_i = x_i - m:
-//     sum = |sum f_i|,  moment = |sum a_i x f_i|,
-//     forces = sum |f_i|,  moments = sum |a_i| |f_i|
-// at one time; the largest of each counts.
+// What is said of the forces f_i on the grains at x_i, with m the middle of the box and
+// arms a_i = x_i - m. In code order
+//     force   = largest |f_i|,   change = largest |f_i - f_i at the time before|,
+//     sum     = |sum f_i|,       moment  = |sum a_i x f_i|,
+//     forces  = sum |f_i|,       moments = sum |a_i| |f_i|,
+// at one time; of each the largest over all times counts. The net force is sum /
+// forces, the net moment moment / moments: 0 for forces in balance, 1 for forces that
+// all point one way. With a box that repeats the moment depends on the image taken, and
+// is 0.
 #include "measures.h"
 
 #include <math.h>

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-//     standard error = deviation / sqrt(n),   half width = t(n - 1) standard error.
+// The mean over the runs that have a number, n of them, and how sure it is:
+//     mean           = sum / n
+//     standard error = deviation / sqrt(n),   deviation with n - 1
+//     half width     = t(n - 1) standard error,   Student's t at the confidence asked
+//     for.
+// NAN is a run that has none. With one run the errors are 0, not unknown: readers of
+// the artifact look at n.
 #include "over_runs.h"
 
 #include "basics/memory.h"

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The drive balances the grains: torque = -sum of their moments on the part about the
-// axis (motion.h), times the sign of the rate. Blocks are equal parts of the rows, one
-// after the other; the standard error is their deviation over the root of their number,
-// which is honest where a block is longer than the memory of the flow.
+// The torque that turns a part of a cell. The drive balances the grains, so with the
+// moments M of the grains on walls and groups of the part about the axis (motion.h),
+//     torque_t = -sign(rate) sum over the part of M_t          at each row t in the
+//     window mean     = mean of torque_t error    = deviation of the means of equal
+//     blocks / sqrt(number of blocks).
+// Blocks are equal parts of the rows, one after the other; their error is honest where
+// a block is longer than the memory of the flow.
+//
+// The first half of the file finds the part: walls and groups by name in the scene of
+// the motion, as `simulate` numbers them (box walls first, then names in the order of
+// strcmp), or by number.
 #include "torque.h"
 
 #include "basics/memory.h"

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Depth of a node: the least distance to an open wall of the box,
-//     depth = min over open walls of |x - wall|,   0 for nodes outside.
+// What films do at each step that is recorded. Depth of a node: the least distance to
+// an open wall of the box,
+//     depth = min over open walls of |x - wall|,   0 for nodes outside,
+// and over the wet nodes that films reach
+//     depth   = mean of their depths,   deepest = the largest,   0 without such nodes
+//     evaporation = that of films, in scaled units, times RATE, kg/s.
+// Depths of nodes are found at the first step with films, since every step asks for
+// them.
 #include "film_history.h"
 
 #include "basics/memory.h"

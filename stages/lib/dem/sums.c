@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which thread finishes which grain, and where the loads of its pairs are added up
-// [engine.h]. A grain whose pairs lie in the chunks of several threads is shared: each
-// of its pairs adds to a row of its own, and the rows are summed later in the order of
-// pairs. So every sum has one order, for any number of threads.
+// [engine.h]. In code order, with pairs sorted by their first grain,
+//     first_group  the first group that has a pair of the grain
+//     last_group   the last with a pair whose first grain is it or one before: behind
+//     it
+//                  the grain may move
+//     shared       where these two lie in chunks of different threads
+//     rows         one for each grain and the dummy, then one for each pair of a shared
+//                  grain, in the order of pairs
+// Each pair of a shared grain adds to a row of its own, and the rows are summed later
+// in the order of pairs. So every sum has one order, for any number of threads.
 #include "dem/engine.h"
 
 #include "basics/memory.h"

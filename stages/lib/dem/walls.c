@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rigid walls: which grains are near, how they move, and what grains do to them in sum
-// (wall_contact.c has the law of the contact).
+// (wall_contact.c has the law of the contact). In code order, with the wall's velocity
+// v, normal n and time step dt,
+//     near:     overlap >= -(skin + longest gap of a bridge)
+//     servo:    v.n = share (wanted - F_n) / resistance, |v.n| <= its largest speed,
+//               F_n = -force . n,  resistance = sum over its contacts of k dt + c
+//     moves:    displacement += v dt
+//     force, moment = sums over its contacts, in the order of the pairs
+//     work += dt/2 (-force.v - moment.spin)   with the forces at both ends of a step
+// Velocities begin half a step before the first cycle, as those of grains. A spin
+// counts as far as it leaves the shape where it is: about the axis of a plane, cylinder
+// or ring, any of a sphere, none of a block. Walls go in the scaled units of engine.h.
 #include "dem/engine.h"
 
 #include "basics/memory.h"

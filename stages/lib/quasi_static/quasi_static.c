@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One load after another: equilibrium, then the most overloaded bond breaks, until none
-// is at its strength. Units: length is the mean radius, stiffness the largest of a bond
-// or a grain, so forces are in their product.
+// One load after another. Unknown are the displacements u (six of each grain) and the
+// history of contacts and bonds. For each load, in code order,
+//     load = force - what is taken off a free body            (external_load.c)
+//     balance: residual(u) = load - B^T response(B u) = 0     (the kinematics' balance)
+//     the most overloaded bond breaks                         (break_bonds.c)
+// until none is at its strength; then displacements are checked: small ones must stay
+// below SMALL_LIMIT mean radii, and no number may be NAN.
+//
+// Units: length is the mean radius, stiffness the largest of a bond k^n A or a grain,
+// so forces are in their product. The regularisation on the diagonal of K is 1e-9 of
+// the softest pair: it makes K regular where nothing holds a grain, and matters nowhere
+// else. Which kinematics there is, small or large displacements, is chosen once.
 #include "quasi_static_internal.h"
 
 #include "large/large_state.h"

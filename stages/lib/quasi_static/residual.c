@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// residual = load - damping (dashpot_force + grain_dashpot (u - previous))
-//            - B^T response(B u)
+// Unknowns u, displacements of the grains; given the load, the dashpots' forces so far
+// and `previous`, the u that the step began from. In the order of the code
+//     deformation = B u                                        of each pair
+//     residual = load - damping (dashpot_force + grain_dashpot (u - previous))
+//                - B^T response(B u)
 // and 0 for grains that are fixed or detached. A residual is as large as the larger of
 // its force and its moment; the largest of all grains is what the tolerance judges.
+// Sums go by the pairs in their order, so they have the same digits on each call.
 #include "quasi_static_internal.h"
 
 #include <math.h>

@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of the last equilibrium, in SI units: displacements times `length`, forces
-// times `stiffness` times `length`, moments times that times `length` again.
+// Results of the last equilibrium, in SI units. With L = `length`, K = `stiffness`,
+//     displacement  L u, of a free body without its rigid motion,
+//     overlap       L (overlap at the start - d[NORMAL]),
+//     force         K L (B^T load at the first grain): what the second one feels,
+//     moment        K L^2 (B^T load), in reactions with (place - about) x force,
+//     unbalanced    mean |residual| of grains that move / mean |force| of pairs
+//                   [K 4.20].
+// Grains feel -B^T load, so fixed ones and the wall hold with B^T load: the reaction is
+// the sum of these, at places of the packing. Pairs that touch or are bonded are
+// contacts, sorted by their grains, walls last; pairs of grains that left are none.
 #include "quasi_static_internal.h"
 
 #include "basics/memory.h"

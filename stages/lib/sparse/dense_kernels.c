@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dispatch of the dense product to the kernel of this processor.
+// Dispatch of the dense product C = A B^T to the kernel of this processor. The table of
+// kernels is chosen at run time, once for each call, since a build serves processors
+// with AVX2 and with AVX-512 (vector_kernels.h).
 #include "dense_kernels.h"
 
 #include "vector_kernels.h"

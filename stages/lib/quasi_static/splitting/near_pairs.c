@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the splitting works on: pairs that are near enough to touch. Only these are in
 // the patterns of its two matrices, because pairs that stay apart would double the
-// numbers in a factor. A pair that closes all the same joins them, and both patterns
-// are made again.
+// numbers in a factor. A pair is near if it has or had a bond, or if its gap is below
+// NEAR_GAP,
+//     d[NORMAL] - overlap < NEAR_GAP     (mean radii).
+// A pair that closes all the same joins them, and both patterns are made again. The
+// springs between grains and contacts are as stiff as a bond, or a contact where that
+// is softer,
+//     rho = mean over bonds of min(bond stiffness, contact stiffness),
+// and without bonds 0.01 of the unit of stiffness (contact_splitting.c says why).
 #include "splitting_internal.h"
 
 #include "basics/memory.h"
