@@ -40,9 +40,9 @@
 // Coefficients of a contact at its overlap. The two secant stiffnesses serve rolling
 // springs, whose stiffness follows that of the contact.
 struct lane_law {
-    doublew spring;          // normal force
-    doublew shear_stiffness; // at this overlap, as both dampings
-    doublew normal_damping, shear_damping, friction;
+    doublew spring; // normal force
+    // At this overlap, as the force.
+    doublew shear_stiffness, normal_damping, shear_damping, friction;
     doublew normal_stiffness, normal_stiffness_before; // secant
     // Hertz: factor that the shear force of the step before keeps, and the shear
     // stiffness that it had.
