@@ -208,7 +208,7 @@ with scratch() as folder:
                "bridges.volume=2e-12", beads])
 
     dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
-    large, small = make_network(folder, "large", 15), make_network(folder, "small", 10)
+    large, small = make_network(folder, "large", 18), make_network(folder, "small", 10)
     for liquid, network in [("inviscid", large), ("immobile", large), ("viscous", small)]:
         this = [*dry, "--set", f"liquid={liquid}", network]
         in_pieces(f"dry, {liquid} liquid", this)
