@@ -4,9 +4,10 @@
 // CGAL's predicates try intervals first and rational numbers only where these do not
 // decide.
 //
-// Every function is a question whose answer decides topology. They are asked only where
-// an error bound in doubles does not decide (insertion_predicates.c): n_exact of struct
-// triangulation counts how often. No function fails; coordinates must be finite.
+// Every function but the last is a question whose answer decides topology. They are
+// asked only where an error bound in doubles does not decide (insertion_predicates.c):
+// n_exact of struct triangulation counts how often. No function fails; coordinates must
+// be finite.
 #ifndef CRAQUELURE_EXACT_H
 #define CRAQUELURE_EXACT_H
 
