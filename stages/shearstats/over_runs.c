@@ -2,8 +2,7 @@
 // The mean over the runs that have a number, n of them, and how sure it is:
 //     mean           = sum / n
 //     standard error = deviation / sqrt(n),   deviation with n - 1
-//     half width     = t(n - 1) standard error,   Student's t at the confidence asked
-//     for.
+//     half width     = t(n - 1) standard error,   t of Student.
 // NAN is a run that has none. With one run the errors are 0, not unknown: readers of
 // the artifact look at n.
 #include "over_runs.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The torque that turns a part of a cell. The drive balances the grains, so with the
 // moments M of the grains on walls and groups of the part about the axis (motion.h),
-//     torque_t = -sign(rate) sum over the part of M_t          at each row t in the
-//     window mean     = mean of torque_t error    = deviation of the means of equal
-//     blocks / sqrt(number of blocks).
+//     torque_t = -sign(rate) sum over the part of M_t      at each row t in the window,
+//     mean     = mean of torque_t,
+//     error    = deviation of the means of blocks / sqrt(number of blocks).
 // Blocks are equal parts of the rows, one after the other; their error is honest where
 // a block is longer than the memory of the flow.
 //

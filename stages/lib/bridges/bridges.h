@@ -4,7 +4,7 @@
 // positive when they pull the bodies together. Lengths in m, angles in rad, forces in
 // N; everything is scale-free.
 //
-//     struct bridge bridge = {.radius = {1e-4, INFINITY},      a sphere on a plane
+//     struct bridge bridge = {.radius = {1e-4, INFINITY}, // sphere, plane
 //                             .contact_angle = {0.3, 0.3},
 //                             .surface_tension = 0.0728,
 //                             .volume = 1e-14};

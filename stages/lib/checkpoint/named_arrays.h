@@ -5,8 +5,8 @@
 // How a state is read back:
 //     struct array_reader reader = {list, reason, false};
 //     const double *time = read_array(&reader, "time", ARRAY_FLOAT64, 1, 0, 1e150);
-//     const int32_t *bond = read_array(&reader, "bond", ARRAY_INT32, n, -1, n_bond -
-//     1); if (reader.failed) return STATUS_BAD_DATA;
+//     const int32_t *bond = read_array(&reader, "bond", ARRAY_INT32, n, 0, most);
+//     if (reader.failed) return STATUS_BAD_DATA;
 // A file may have been changed by anyone, so ranges are those outside of which a number
 // could lead the program outside of its arrays. For one thread.
 #ifndef CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H

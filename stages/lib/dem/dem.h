@@ -22,10 +22,10 @@
 // are no globals, so several engines may run side by side.
 //
 // The least that a program needs:
-//     struct dem_wall floor = {.shape = DEM_PLANE, .normal = {0, 0, 1}};
+//     struct dem_wall bottom = {.shape = DEM_PLANE, .normal = {0, 0, 1}};
 //     struct dem_setup setup = {.packing = &packing,
 //                               .n_wall = 1,
-//                               .wall = &floor,
+//                               .wall = &bottom,
 //                               .law = DEM_LINEAR,
 //                               .material = {.density = 2500,
 //                                            .normal_stiffness = 1e5,

@@ -52,8 +52,7 @@ struct lane_law {
 // The law of the lanes: spring, stiffness and damping at the overlaps that M has; the
 // spring is 0 where grains do not TOUCH. From pairs.laws where pairs differ, else from
 // dem->law. Overlaps of grains that do not touch are cleared before the roots: that of
-// a negative number is NAN. Hertz takes four roots and a
-// division, linear laws none.
+// a negative number is NAN. Hertz takes four roots and a division, linear laws none.
 SIMD_INLINE struct lane_law law_at(const struct dem *dem, int k, int at,
                                    const struct pair_motion *m, maskw touch,
                                    doublew time_step, unsigned features)

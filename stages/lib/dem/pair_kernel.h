@@ -45,8 +45,8 @@ SIMD_INLINE void add_four(double *sum, const uint32_t *first, const uint32_t *se
 
 // The same with forces, opposite ones, and moments. A sum is one cache line: with 8
 // lanes it is one vector. ON_FIRST is subtracted, too: callers give it the sign for
-// that. A row is force x, y, z, 0 and moment x, y, z, 0. First and second grain of one
-// pair may not be the same but in unused lanes, where all is 0.
+// that. A row is force x, y, z, 0 and moment x, y, z, 0. The two grains of a pair are
+// the same only in unused lanes, where all is 0.
 SIMD_INLINE void add_eight(double *sum, const uint32_t *first, const uint32_t *second,
                            struct rows force, struct rows on_first,
                            struct rows on_second)
@@ -202,7 +202,8 @@ SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
 
 // One cycle of groups BEGIN .. END - 1. Returns how many bonds broke. FEATURES is a
 // constant wherever this is inlined. Without a step done (cycle 0) the time step counts
-// as 0: no history grows and no plane turns, and forces are those of the places alone.
+// as 0: no history grows and no plane turns; dashpots see the velocities that were
+// given.
 SIMD_INLINE int sweep_groups(const struct dem *dem, int begin, int end,
                              unsigned features)
 {

@@ -22,8 +22,8 @@
 // With (n - t/2) for n_old and (1 - a^2/2) F the length holds to fourth order and F
 // ends in the new plane exactly.
 //
-// Errors: stretch and overlap are exact to a few roundings of du (relative to d0, 1e-16
-// |du|); V^s and the rotation are those of leapfrog, of second order in dt. Where two
+// Errors: stretch and overlap are exact to a few roundings of |du|, however small that
+// is; V^s and the rotation are those of leapfrog, of second order in dt. Where two
 // centres coincide n is 0 and so is all that follows along it, in place of NAN.
 #include "dem/pair_simd.h"
 

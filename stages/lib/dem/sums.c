@@ -2,9 +2,8 @@
 // Which thread finishes which grain, and where the loads of its pairs are added up
 // [engine.h]. In code order, with pairs sorted by their first grain,
 //     first_group  the first group that has a pair of the grain
-//     last_group   the last with a pair whose first grain is it or one before: behind
-//     it
-//                  the grain may move
+//     last_group   the last with a pair whose first grain is it or one before; after
+//                  that group the grain may move
 //     shared       where these two lie in chunks of different threads
 //     rows         one for each grain and the dummy, then one for each pair of a shared
 //                  grain, in the order of pairs

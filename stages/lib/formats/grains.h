@@ -4,7 +4,7 @@
 //
 // TEXT is only read, and need not end with a null. Numbers are taken as they stand:
 // metres, radii and so on are for read_grains and convert_grains
-// (artifacts/read_grains.h), which every stage calls.
+// (artifacts/read_grains.h), which stages call.
 #ifndef CRAQUELURE_GRAINS_H
 #define CRAQUELURE_GRAINS_H
 

@@ -39,7 +39,6 @@ static inline struct image image_opposite(struct image a)
     return image_difference((struct image){0}, a);
 }
 
-// All three components.
 static inline bool same_image(struct image a, struct image b)
 {
     return a.along[0] == b.along[0] && a.along[1] == b.along[1] &&

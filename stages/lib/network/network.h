@@ -5,14 +5,11 @@
 // and faces separate two grains, or a grain from a wall (K's fv and fc, K 3.7). The
 // faces of one grain close around it: its Voronoi cell cut by the box.
 //
-// Loops that come up again and again:
-//     nodes of a face   for (int64_t k = n.face_offset[f]; k < n.face_offset[f + 1];
-//     k++)
-//                           n.face_nodes[k]
-//     its throats       face_throat(&n, &incidence, f, k), from corner k to the next
-//     throats of a node for (int k = in.offset[i]; k < in.offset[i + 1]; k++)
-//     in.throat[k] of a grain        faces f with face_particles[f][0] or [1] equal to
-//     it
+// Loops that come up again and again, in a network n with its incidence in:
+//     nodes of face f    face_nodes[k],  face_offset[f] <= k < face_offset[f + 1]
+//     throats of face f  face_throat(&n, &in, f, k),  k from 0 to its corners less 1
+//     throats of node i  in.throat[k],   in.offset[i] <= k < in.offset[i + 1]
+//     faces of grain g   those with g in face_particles
 // throat_sides.h has the faces of each throat. Rows are those of the artifact: whoever
 // removes nodes or throats must renumber all that refers to them (compact_nodes of
 // tessellate, merging_finish of merge-nodes).

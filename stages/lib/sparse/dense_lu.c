@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small dense systems A x = b: the factor by the kernel of this processor
 // (dense_lu_kernel.h), the substitution here. With P A = L U in rows ROW of the matrix,
-//     y_k = b_row(k) - L_k . y,            k = 0 .. n - 1   (L has ones on its
-//     diagonal) x_k = (y_k - U_k . x) / U_kk,        k = n - 1 .. 0,  in place of y.
-// Both go by rows, where numbers are contiguous, and their sums by dot_product, whose
-// order of additions is the same on all processors. Source: Golub and Van Loan, Matrix
-// Computations, 3.1 and 3.4.
+//     y_k = b_row(k) - L_k . y,        k = 0 .. n - 1,
+//     x_k = (y_k - U_k . x) / U_kk,    k = n - 1 .. 0,  in place of y.
+// L has ones on its diagonal. Both go by rows, where numbers are contiguous, and their
+// sums by dot_product, whose order of additions is the same on all processors. Source:
+// Golub and Van Loan, Matrix Computations, 3.1 and 3.4.
 #include "dense_lu.h"
 
 #include "dense_kernels.h"

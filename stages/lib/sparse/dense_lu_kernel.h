@@ -68,7 +68,7 @@ static void exchange_rows(double *panel, int height, int width, int *row, int k,
     }
 }
 
-// TO -= SHARE FROM Fused, in the lanes and in the rest alike.
+// TO -= SHARE FROM. Fused, in the lanes and in the rest alike.
 SIMD_INLINE void subtract_column(int n, double share, const double *restrict from,
                                  double *restrict to)
 {

@@ -8,8 +8,7 @@
 // The loop that a caller writes; the first correction is nearly the solution:
 //     conductance_matrix_residual(&matrix, given, x, residual);
 //     for (int k = 0; size_of(residual) > tolerance && k < most; k++)
-//         status = linear_correct(&linear, given, x, residual, 1e-3, &iterations,
-//         reason);
+//         status = linear_correct(&linear, given, x, residual, 1e-3, &count, reason);
 // Where the residual does not fall any more, rounding of the flows is reached: that is
 // the caller's failure to tell.
 #ifndef CRAQUELURE_LINEAR_SOLVER_H

@@ -5,8 +5,8 @@
 // A point is in a cell's sphere where its power, |x - centre|^2 - weight, is below that
 // of the vertices; the triangulation has no such point. To walk around it:
 //     for (int k = 0; k < 4; k++) {
-//         const int32_t next = t.cell[c].neighbour[k];   across the facet without
-//         vertex k if (next >= 0) ...
+//         const int32_t next = t.cell[c].neighbour[k]; // across the facet opposite k
+//         if (next >= 0) ...
 //     }
 // Made by one thread; safe to read for several. Memory: 64 bytes a cell while it is
 // made, 32 in the end; points that fill space have 6.8 cells each.
