@@ -3,7 +3,8 @@
 // a multifrontal elimination.
 //
 // A small one adds each product at once. A large one defers them: `pending` holds up to
-// MAX_PENDING rows, in blocks of columns that fit in the cache, and a pass adds
+// MAX_PENDING rows (of doubles half as many), in blocks of columns that fit in the
+// cache, and a pass adds
 //     entry[i][j] += sum_k factor[k] pending[k][i] pending[k][j]
 // for all of them, which reads the entries once (dense_front_kernel.h). A row that is
 // copied while products are pending is completed from them. The order of the sums is
@@ -21,9 +22,15 @@ static size_t entry_size(const struct dense_front *dense)
     return dense->is_rounded ? sizeof(float) : sizeof(double);
 }
 
-static void *row_of(const struct dense_front *dense, int i)
+// Not of floats, which lie in strips.
+static double *row_of(const struct dense_front *dense, int i)
 {
-    return (char *)dense->entry + dense_front_row(dense, i) * entry_size(dense);
+    return (double *)dense->entry + dense_front_row(dense, i);
+}
+
+static float *float_at(const struct dense_front *dense, int i, int j)
+{
+    return (float *)dense->entry + dense_front_in_strip(dense, i, j);
 }
 
 // Number of entries of N rows; whole panels if large.
@@ -48,14 +55,19 @@ static void reserve_rows(struct dense_front *dense, int n_before, int n)
     dense->entry = entry;
 }
 
+static int room_pending(const struct dense_front *dense)
+{
+    return dense->is_rounded ? MAX_PENDING : MAX_PENDING_DOUBLES;
+}
+
 // --- what waits --------------------------------------------------------------------
 
 // The more are pending, the fewer passes over the entries, but the more to add to each
 // row that is copied.
-static int max_pending(int n)
+static int max_pending(const struct dense_front *dense, int n)
 {
     const int most = n / 16;
-    return most < 8 ? 8 : most < MAX_PENDING ? most : MAX_PENDING;
+    return most < 8 ? 8 : most < room_pending(dense) ? most : room_pending(dense);
 }
 
 static int columns_in_block(const struct dense_front *dense)
@@ -68,7 +80,7 @@ static int columns_in_block(const struct dense_front *dense)
 static size_t pending_column(const struct dense_front *dense, int p)
 {
     const int columns = columns_in_block(dense);
-    return (size_t)(p / columns) * MAX_PENDING * (size_t)columns +
+    return (size_t)(p / columns) * (size_t)(room_pending(dense) * columns) +
            (size_t)(p % columns);
 }
 
@@ -96,7 +108,7 @@ static void reserve_pending(struct dense_front *dense, int n)
     const int n_block = blocks_of(dense, n);
     if (n_block <= dense->n_block) return;
     if (!dense->factor) dense->factor = NEW_ARRAY(double, MAX_PENDING);
-    const size_t size = (size_t)MAX_PENDING * BLOCK_BYTES;
+    const size_t size = (size_t)room_pending(dense) * BLOCK_BYTES;
     const int capacity = n_block + dense->n_block / 2;
     void *pending = allocate_aligned((size_t)capacity, size);
     if (dense->pending) memcpy(pending, dense->pending, (size_t)dense->n_block * size);
@@ -162,19 +174,38 @@ static void gather_pending(const struct dense_front *dense, int n, int p, double
 
 // --- rows --------------------------------------------------------------------------
 
+static void clear_row(struct dense_front *dense, int i)
+{
+    if (dense->is_rounded) {
+        for (int j = 0; j < i; j += STRIP)
+            memset(float_at(dense, i, j), 0, STRIP * sizeof(float));
+        return;
+    }
+    const size_t length = dense_front_row(dense, i + 1) - dense_front_row(dense, i);
+    if (length > 0) memset(row_of(dense, i), 0, length * sizeof(double));
+}
+
 // A new panel is cleared as a whole, since passes add to its unused part too.
+static void clear_panel(struct dense_front *dense, int i)
+{
+    const size_t begin = dense_front_row(dense, i) * entry_size(dense);
+    const size_t end = dense_front_row(dense, i + PANEL) * entry_size(dense);
+    memset((char *)dense->entry + begin, 0, end - begin);
+}
+
 void dense_front_add_row(struct dense_front *dense, int n)
 {
     reserve_rows(dense, n, n + 1);
-    const int end = dense->is_large && n % PANEL == 0 ? n + PANEL : n + 1;
-    const size_t length = dense_front_row(dense, end) - dense_front_row(dense, n);
-    if (length > 0) memset(row_of(dense, n), 0, length * entry_size(dense));
+    if (dense->is_large && n % PANEL == 0)
+        clear_panel(dense, n);
+    else
+        clear_row(dense, n);
     if (dense->n_pending == 0) return;
     reserve_pending(dense, n + 1);
     clear_pending(dense, n);
 }
 
-// Column P below the diagonal, of a large one. Rows of a panel are LENGTH numbers
+// Column P below the diagonal, of large rows. Those of a panel are LENGTH numbers
 // apart: each is in a cache line of its own, which the processor does not foresee.
 static void copy_column(const struct dense_front *dense, int n, int p, double *row)
 {
@@ -184,36 +215,69 @@ static void copy_column(const struct dense_front *dense, int n, int p, double *r
         const size_t length = (size_t)end;
         size_t at = dense_front_row(dense, i) + (size_t)p;
         for (; i < end && i < n; i++, at += length) {
-            __builtin_prefetch((char *)dense->entry +
-                               (at + AHEAD * length) * entry_size(dense));
+            __builtin_prefetch((double *)dense->entry + at + AHEAD * length);
             row[i] = dense_front_number(dense, at);
         }
     }
 }
 
-void dense_front_copy_row(const struct dense_front *dense, int n, int p, double *row)
+static void take_doubles(struct dense_front *dense, int n, int p, double *row)
 {
-    for (int j = 0; j < p; j++)
-        row[j] = dense_front_entry(dense, p, j);
-    row[p] = 0;
+    const int last = n - 1;
+    memcpy(row, row_of(dense, p), (size_t)p * sizeof *row);
     if (dense->is_large)
         copy_column(dense, n, p, row);
     else
         for (int i = p + 1; i < n; i++)
             row[i] = dense_front_entry(dense, i, p);
-    if (dense->n_pending == 0) return;
-    gather_pending(dense, n, p, row);
-    row[p] = 0;
-}
-
-void dense_front_remove(struct dense_front *dense, int n, int p)
-{
-    const int last = n - 1;
     if (p == last) return;
-    memcpy(row_of(dense, p), row_of(dense, last), (size_t)p * entry_size(dense));
+    memcpy(row_of(dense, p), row_of(dense, last), (size_t)p * sizeof *row);
     for (int i = p + 1; i < last; i++)
         dense_front_set(dense, i, p, dense_front_entry(dense, last, i));
-    move_pending(dense, p, last);
+}
+
+// Column P from row BEGIN to row END - 1 of a panel, below the diagonal. Meanwhile it
+// fetches that of the next panel.
+static void take_in_panel(struct dense_front *dense, int begin, int end, int p,
+                          int last, double *row)
+{
+    float *own = float_at(dense, begin, p);
+    const float *next = float_at(dense, begin + PANEL, p);
+    for (int i = begin; i < end; i++, own += STRIP, next += STRIP) {
+        __builtin_prefetch(next, 1);
+        row[i] = (double)*own;
+        if (i < last) *own = *float_at(dense, last, i);
+    }
+}
+
+static void take_floats(struct dense_front *dense, int n, int p, double *row)
+{
+    const int last = n - 1;
+    for (int j = 0; j < p; j += STRIP) {
+        float *own = float_at(dense, p, j);
+        const float *from = float_at(dense, last, j);
+        for (int c = 0; c < STRIP && j + c < p; c++) {
+            row[j + c] = (double)own[c];
+            own[c] = from[c];
+        }
+    }
+    for (int i = p + 1, end; i < n; i = end) {
+        end = (i / PANEL + 1) * PANEL < n ? (i / PANEL + 1) * PANEL : n;
+        take_in_panel(dense, i, end, p, last, row);
+    }
+}
+
+void dense_front_take_row(struct dense_front *dense, int n, int p, double *row)
+{
+    if (dense->is_rounded)
+        take_floats(dense, n, p, row);
+    else
+        take_doubles(dense, n, p, row);
+    if (dense->n_pending > 0) {
+        gather_pending(dense, n, p, row);
+        move_pending(dense, p, n - 1);
+    }
+    row[p] = 0;
 }
 
 void dense_front_enlarge(struct dense_front *dense, int n, bool is_rounded)
@@ -233,7 +297,7 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
 {
     if (dense->is_large) {
         add_pending(dense, n, factor, row);
-        if (dense->n_pending >= max_pending(n)) dense_front_flush(dense, n);
+        if (dense->n_pending >= max_pending(dense, n)) dense_front_flush(dense, n);
         return;
     }
     double *entry = dense->entry;
@@ -249,10 +313,10 @@ void dense_front_state(struct dense_front *dense, int n,
 {
     int n_pending = dense->n_pending;
     stream_flags(stream, &dense->is_large, 1);
-    stream_integer(stream, &n_pending, 0, MAX_PENDING - 1);
+    stream_integer(stream, &n_pending, 0, room_pending(dense) - 1);
     for (int i = 0; i < n; i++) {
         if (stream->restoring) dense_front_add_row(dense, i);
-        stream_numbers(stream, (double *)dense->entry + dense_front_row(dense, i), i);
+        stream_numbers(stream, row_of(dense, i), i);
     }
     stream->failed |= n_pending > 0 && !dense->is_large;
     if (n_pending == 0 || stream->failed) return;
@@ -260,7 +324,7 @@ void dense_front_state(struct dense_front *dense, int n,
     dense->n_pending = n_pending;
     stream_numbers(stream, dense->factor, n_pending);
     stream_numbers(stream, dense->pending,
-                   (int64_t)blocks_of(dense, n) * MAX_PENDING *
+                   (int64_t)blocks_of(dense, n) * room_pending(dense) *
                        columns_in_block(dense));
 }
 

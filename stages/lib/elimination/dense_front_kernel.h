@@ -7,7 +7,8 @@
 // GATHER. Each entry sums its products with fused operations, in the order in which
 // they are pending, so the digits do not depend on the vectors.
 //
-// Layout: row i of the entries begins at dense_front_row(i). Pending rows lie by blocks
+// Layout: entry (i, 0) is at dense_front_at(i, 0), those of its row are IN_ROW from it.
+// Pending rows lie by blocks
 // of BLOCK columns, and in a block one row after the other: pending[k][c] is number
 // k BLOCK + c % BLOCK of block c / BLOCK. `weight` has factor[k] pending[k][i] for
 // TILE_ROWS rows i, then for the next k; then the next tile. Entries are conductances
@@ -23,13 +24,22 @@
 enum {
     LANES = sizeof(VECTOR) / sizeof(NUMBER),
     WIDTH = VECTORS * LANES,
-    BLOCK = BLOCK_BYTES / sizeof(NUMBER) // columns; of all that wait they stay in cache
+    BLOCK =
+        BLOCK_BYTES / sizeof(NUMBER), // columns; of all that wait they stay in cache
+    MOST = sizeof(NUMBER) == sizeof(double) ? MAX_PENDING_DOUBLES : MAX_PENDING
 };
+
+// From column 0 to COLUMN of a row: floats lie in strips.
+static inline size_t in_row(int column)
+{
+    if (sizeof(NUMBER) == sizeof(double)) return (size_t)column;
+    return (size_t)(column / STRIP) * STRIP * PANEL + (size_t)(column % STRIP);
+}
 
 // The block of column FIRST, a multiple of BLOCK.
 static const NUMBER *pending_block(const struct dense_front *dense, int first)
 {
-    return (const NUMBER *)dense->pending + (size_t)first * MAX_PENDING;
+    return (const NUMBER *)dense->pending + (size_t)first * MOST;
 }
 
 // TILE_ROWS rows of the entries, and their weights. Rows are those of one panel, so
@@ -59,11 +69,12 @@ static inline void add_to_tile(const struct tile *tile, int column, int n_pendin
     }
 #pragma GCC unroll 8
     for (int r = 0; r < TILE_ROWS; r++) {
-        VECTOR *to =
-            (VECTOR *)__builtin_assume_aligned(tile->row[r] + column, sizeof(VECTOR));
 #pragma GCC unroll 3
-        for (int v = 0; v < VECTORS; v++)
-            to[v] += sum[r][v];
+        for (int v = 0; v < VECTORS; v++) {
+            VECTOR *to = (VECTOR *)__builtin_assume_aligned(
+                tile->row[r] + in_row(column + v * LANES), sizeof(VECTOR));
+            *to += sum[r][v];
+        }
     }
 }
 
@@ -80,15 +91,15 @@ static void add_to_block(const struct dense_front *dense, int begin, int end, in
         struct tile tile = {.weight = weight + (size_t)(i - begin) * (size_t)n_pending};
         const NUMBER *next[TILE_ROWS];
         for (int r = 0; r < TILE_ROWS; r++) {
-            tile.row[r] = entry + dense_front_row(dense, i + r);
-            next[r] = entry + dense_front_row(dense, i + r + TILE_ROWS);
+            tile.row[r] = entry + dense_front_at(dense, i + r, 0);
+            next[r] = entry + dense_front_at(dense, i + r + TILE_ROWS, 0);
         }
         const int width = (i / PANEL + 1) * PANEL;
         const int last = width < first + BLOCK ? width : first + BLOCK;
         for (int column = first; column < last; column += WIDTH) {
             for (int r = 0; r < TILE_ROWS; r++)
-                for (int line = 0; line < VECTORS * (int)sizeof(VECTOR); line += 64)
-                    __builtin_prefetch((const char *)(next[r] + column) + line, 1);
+                for (int c = 0; c < WIDTH; c += 64 / (int)sizeof(NUMBER))
+                    __builtin_prefetch(next[r] + in_row(column + c), 1);
             add_to_tile(&tile, column, n_pending, pending + (column - first));
         }
     }
@@ -115,7 +126,7 @@ void PASS(struct dense_front *dense, int n)
     const int n_portion = (n + ROWS - 1) / ROWS;
 #pragma omp parallel if (n > SHARED_FRONT)
     {
-        NUMBER *weight = allocate_uncleared((size_t)ROWS * MAX_PENDING, sizeof *weight);
+        NUMBER *weight = allocate_uncleared((size_t)ROWS * MOST, sizeof *weight);
 #pragma omp for schedule(dynamic)
         for (int portion = n_portion - 1; portion >= 0; portion--) {
             const int begin = portion * ROWS;
@@ -128,24 +139,26 @@ void PASS(struct dense_front *dense, int n)
     }
 }
 
-// row[c] += sum_k weight[k] pending[k][c] for columns below N, three vectors at a time.
-// ROW stays in doubles where entries are floats.
+// row[c] += sum_k weight[k] pending[k][c] for columns below N, so many vectors at a
+// time that they come from memory one after the other. ROW stays in doubles where
+// entries are floats.
 void GATHER(const struct dense_front *dense, int n, const double *weight, double *row)
 {
+    enum { AT_ONCE = 9, COLUMNS = AT_ONCE * LANES };
     for (int first = 0; first < n; first += BLOCK) {
         const NUMBER *pending = pending_block(dense, first);
-        for (int column = 0; column < BLOCK && first + column < n;
-             column += 3 * LANES) {
-            VECTOR sum[3] = {0};
+        for (int column = 0; column < BLOCK && first + column < n; column += COLUMNS) {
+            VECTOR sum[AT_ONCE] = {0};
             for (int k = 0; k < dense->n_pending; k++) {
-                VECTOR part[3];
+                VECTOR part[AT_ONCE];
                 memcpy(part, pending + (size_t)k * BLOCK + column, sizeof part);
                 const VECTOR times = (NUMBER)weight[k] - (VECTOR){0};
-                for (int v = 0; v < 3; v++)
+#pragma GCC unroll 9
+                for (int v = 0; v < AT_ONCE; v++)
                     sum[v] = FMADD(times, part[v], sum[v]);
             }
             const int left = n - first - column;
-            for (int c = 0; c < 3 * LANES && c < left; c++)
+            for (int c = 0; c < COLUMNS && c < left; c++)
                 row[first + column + c] += (double)sum[c / LANES][c % LANES];
         }
     }

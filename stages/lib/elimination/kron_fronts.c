@@ -128,12 +128,11 @@ static void add_member(struct kron_fronts *fronts, int front_index, int site)
     front->site[front->n++] = site;
 }
 
-// The last member takes the place of member P.
+// The last member takes the place of member P, as its links have done.
 static void remove_member(struct kron_fronts *fronts, int front_index, int p)
 {
     struct front *front = &fronts->front[front_index];
     remove_membership(fronts, front->site[p], front_index);
-    dense_front_remove(&front->dense, front->n, p);
     const int last = --front->n;
     if (p == last) return;
     front->site[p] = front->site[last];
@@ -240,7 +239,7 @@ static void extract_row(struct kron_fronts *fronts, int front_index, int site)
         GROW_ARRAY(fronts->row, fronts->row_capacity, fronts->row_capacity);
     const int place =
         fronts->membership[membership_of(fronts, site, front_index)].place;
-    dense_front_copy_row(&front->dense, front->n, place, fronts->row);
+    dense_front_take_row(&front->dense, front->n, place, fronts->row);
     remove_member(fronts, front_index, place);
     fronts->row[place] = fronts->row[front->n];
 }
