@@ -4,7 +4,7 @@
 // 0 above flat menisci and 1 in the drying air, inner nodes of the gas balance,
 //     sum_j conductance_ij (phi_i - phi_j) = 0,
 // so each can be eliminated as soon as it dries (star-mesh transformation,
-// elimination/kron_fronts.h). Then air_conductance[node] times the potential
+// elimination/kron_fronts.h). Then the conductance to the air times the potential
 // difference, 1, is what a wet node evaporates; their sum is the rate. The levels of
 // the boundary layer are eliminated once, before the run.
 #include "vapour.h"
@@ -129,5 +129,5 @@ double vapour_rate(const struct vapour *vapour)
 
 double vapour_evaporation(const struct vapour *vapour, int node)
 {
-    return vapour->mesh.air_conductance[node];
+    return kron_fronts_air(&vapour->mesh, node);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rate of each timer, kept up to date as nodes and throats change:
-//     rate[k] = sum over shares of k of part * air_conductance[node],
+//     rate[k] = sum over shares of k of part * conductance of its node to the air,
 //     part = section of the reservoir's throats at the node / section of all there,
 // before films change it (film_supply.h).
 // Small changes are added to and subtracted from a compensated sum. Subtraction loses
@@ -38,7 +38,7 @@ int timer_of(struct emptying_times *times, int owner)
 static double amount_of(const struct emptying_times *times,
                         const struct evaporation_share *share)
 {
-    return share->part * times->occupancy->vapour.mesh.air_conductance[share->node];
+    return share->part * times->occupancy->vapour.mesh.air[share->air_place];
 }
 
 static void add_to_sum(struct emptying_times *times, int k, double amount)
@@ -83,7 +83,8 @@ static void add_share(struct emptying_times *times, int node, int incidence, int
     times->shares[timer]++;
     times->share_place[incidence] = times->n_share;
     times->share_incidence[times->n_share] = incidence;
-    times->share[times->n_share++] = (struct evaporation_share){part, node, timer};
+    times->share[times->n_share++] = (struct evaporation_share){
+        part, times->occupancy->vapour.mesh.air_place[node], timer};
 }
 
 // What supplies the rings at NODE: themselves, or liquid that films join to them.
@@ -178,12 +179,16 @@ void evaporation_shares_state(struct emptying_times *times,
                               struct checkpoint_stream *stream)
 {
     const struct network *network = times->occupancy->network;
+    const struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
     const int n_incidence = 2 * network->n_throat;
     stream_integer(stream, &times->n_share, 0, n_incidence);
     for (int k = 0; k < times->n_share; k++) {
         struct evaporation_share *share = &times->share[k];
         stream_numbers(stream, &share->part, 1);
-        stream_integer(stream, &share->node, 0, network->n_node - 1);
+        int node = stream->restoring ? 0 : mesh->air_site[share->air_place];
+        stream_integer(stream, &node, 0, network->n_node - 1);
+        share->air_place = mesh->air_place[node];
+        stream->failed |= share->air_place < 0;
         stream_integer(stream, &share->timer, 0, times->n - 1);
     }
     stream_integers(stream, times->share_incidence, times->n_share, 0, n_incidence - 1);

@@ -8,11 +8,12 @@
 
 #include "emptying_times.h"
 
-// The reservoir of TIMER supplies this part of what NODE evaporates. Only nodes with a
-// path to the air have shares. PART is from 0 to 1; those of a node sum to 1.
+// The reservoir of TIMER supplies this part of what the node at a place in
+// vapour.mesh.air evaporates. Only nodes with a path to the air have shares. PART is
+// from 0 to 1; those of a node sum to 1.
 struct evaporation_share {
     double part;
-    int node, timer;
+    int air_place, timer;
 };
 
 static inline bool is_rings(const struct emptying_times *times, int place)

@@ -62,7 +62,7 @@ static double note_node(struct dried_nodes *dried, const struct kron_fronts *mes
     GROW_ARRAY(dried->node, dried->n_node, dried->node_capacity);
     struct dried_node *node = &dried->node[dried->n_node++];
     *node = (struct dried_node){.begin = dried->n_link,
-                                .total = mesh->air_conductance[site]};
+                                .total = kron_fronts_air(mesh, site)};
     const int n = kron_fronts_list_links(mesh, site, dried->other, dried->conductance);
     double to_but = 0;
     for (int i = 0; i < n; i++) {

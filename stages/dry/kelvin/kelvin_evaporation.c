@@ -43,8 +43,8 @@ void kelvin_find_evaporation(struct kelvin_menisci *kelvin,
     find_levels(kelvin, occupancy);
     for (int k = 0; k < occupancy->n_wet; k++) {
         const int node = occupancy->wet[k];
-        kelvin->flow[node] = mesh->air_conductance[node] * (1 - kelvin->level[node]);
-        if (mesh->air_conductance[node] > 0) compensated_add(&rate, kelvin->flow[node]);
+        kelvin->flow[node] = kron_fronts_air(mesh, node) * (1 - kelvin->level[node]);
+        if (kron_fronts_air(mesh, node) > 0) compensated_add(&rate, kelvin->flow[node]);
     }
     kelvin->rate = compensated_value(rate);
     kron_fronts_add_flows(mesh, kelvin->level, kelvin->flow);

@@ -39,7 +39,7 @@ static void find_initial_conductances(struct kelvin_menisci *kelvin,
     double *link = NEW_ARRAY(double, n_site);
     kron_fronts_list(mesh);
     for (int i = 0; i < n_site; i++) {
-        kelvin->initial_conductance[i] = mesh->air_conductance[i];
+        kelvin->initial_conductance[i] = kron_fronts_air(mesh, i);
         const int n = kron_fronts_list_links(mesh, i, other, link);
         for (int k = 0; k < n; k++) {
             kelvin->initial_conductance[i] += link[other[k]];

@@ -67,7 +67,7 @@ static void find_degrees(const struct occupancy *occupancy, struct links *links,
     const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int node = occupancy->wet[k];
     const int n = kron_fronts_list_links(mesh, node, links->other, links->link);
-    *all = *apart = mesh->air_conductance[node];
+    *all = *apart = kron_fronts_air(mesh, node);
     for (int i = 0; i < n; i++) {
         const int other = links->other[i];
         *all += links->link[other];

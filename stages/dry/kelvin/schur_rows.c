@@ -78,7 +78,7 @@ static void add_node(struct schur_rows *rows, const struct kelvin_menisci *kelvi
     const struct kron_fronts *mesh = &occupancy->vapour.mesh;
     const int node = occupancy->wet[at.k];
     const int n = kron_fronts_list_links(mesh, node, rows->other, rows->link);
-    double sum = mesh->air_conductance[node] * at.part;
+    double sum = kron_fronts_air(mesh, node) * at.part;
     for (int i = 0; i < n; i++) {
         const int l = occupancy->wet_place[rows->other[i]];
         const double link = rows->link[rows->other[i]];

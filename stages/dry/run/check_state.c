@@ -205,11 +205,11 @@ static bool shares_fit(const struct emptying_times *times)
     for (int k = 0; k < times->n_share; k++) {
         const struct evaporation_share *share = &times->share[k];
         const int at = times->share_incidence[k];
+        const int node = times->occupancy->vapour.mesh.air_site[share->air_place];
         count[share->timer]++;
         fits &=
             times->share_place[at] == k && share->part >= 0 &&
-            at >= incidence->offset[share->node] &&
-            at < incidence->offset[share->node + 1] &&
+            at >= incidence->offset[node] && at < incidence->offset[node + 1] &&
             reservoir_of(times, incidence->throat[at]) == times->owner[share->timer];
     }
     for (int k = 0; k < times->n; k++)

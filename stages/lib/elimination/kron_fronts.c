@@ -6,8 +6,7 @@
 //     take the row c_ij of i out, total = air_i + sum_j c_ij,
 //     c_jk += c_ij c_ik / total,   air_j += c_ij air_i / total.
 // The sum of all air conductances falls by air_i^2 / total, as air_i goes and the rest
-// is shared; it is a compensated sum, and is added up again when less than half is
-// left.
+// is shared.
 #include "kron_fronts.h"
 
 #include "basics/memory.h"
@@ -24,19 +23,19 @@ struct kron_fronts kron_fronts_init(int n_site, bool is_rounded)
 {
     struct kron_fronts fronts = {.n_site = n_site,
                                  .is_rounded = is_rounded,
-                                 .air_conductance = NEW_ARRAY(double, n_site),
                                  .first = NEW_ARRAY(int, n_site),
-                                 .reached_air = NEW_ARRAY(int, n_site),
                                  .unused_membership = -1,
                                  .unused_front = -1};
     for (int i = 0; i < n_site; i++)
         fronts.first[i] = -1;
+    air_init(&fronts);
     return fronts;
 }
 
 static void empty_front(struct front *front)
 {
     free(front->site);
+    free(front->air_place);
     dense_front_free(&front->dense);
     *front = (struct front){0};
 }
@@ -45,11 +44,10 @@ void kron_fronts_free(struct kron_fronts *fronts)
 {
     for (int f = 0; f < fronts->n_front; f++)
         empty_front(&fronts->front[f]);
-    free(fronts->air_conductance);
+    air_free(fronts);
     free(fronts->first);
     free(fronts->membership);
     free(fronts->front);
-    free(fronts->reached_air);
     free(fronts->place);
     free(fronts->row);
     free(fronts->pair);
@@ -114,17 +112,22 @@ static void remove_membership(struct kron_fronts *fronts, int site, int front)
     fronts->unused_membership = membership;
 }
 
+static void grow_front(struct front *front)
+{
+    front->capacity = front->capacity ? 2 * front->capacity : 4;
+    const size_t n = (size_t)front->capacity;
+    front->site = reallocate(front->site, n, sizeof *front->site);
+    front->air_place = reallocate(front->air_place, n, sizeof *front->air_place);
+}
+
 // SITE comes last on the front, without links.
 static void add_member(struct kron_fronts *fronts, int front_index, int site)
 {
     struct front *front = &fronts->front[front_index];
     add_membership(fronts, site, front_index, front->n);
-    if (front->n == front->capacity) {
-        front->capacity = front->capacity ? 2 * front->capacity : 4;
-        front->site =
-            reallocate(front->site, (size_t)front->capacity, sizeof *front->site);
-    }
+    if (front->n == front->capacity) grow_front(front);
     dense_front_add_row(&front->dense, front->n);
+    front->air_place[front->n] = fronts->air_place[site];
     front->site[front->n++] = site;
 }
 
@@ -136,6 +139,7 @@ static void remove_member(struct kron_fronts *fronts, int front_index, int p)
     const int last = --front->n;
     if (p == last) return;
     front->site[p] = front->site[last];
+    front->air_place[p] = front->air_place[last];
     fronts->membership[membership_of(fronts, front->site[p], front_index)].place = p;
 }
 
@@ -145,36 +149,6 @@ void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductan
     add_member(fronts, front, a);
     add_member(fronts, front, b);
     dense_front_set(&fronts->front[front].dense, 1, 0, conductance);
-}
-
-static void add_air(struct kron_fronts *fronts, int site, double conductance)
-{
-    if (!(conductance > 0)) return;
-    if (fronts->air_conductance[site] == 0)
-        fronts->reached_air[fronts->n_reached_air++] = site;
-    fronts->air_conductance[site] += conductance;
-}
-
-static void sum_air(struct kron_fronts *fronts)
-{
-    fronts->all_air = (struct compensated){0};
-    for (int i = 0; i < fronts->n_site; i++)
-        compensated_add(&fronts->all_air, fronts->air_conductance[i]);
-    fronts->summed_air = compensated_value(fronts->all_air);
-}
-
-// Digits are lost only when a large sum becomes small: then it is added up again.
-static void lower_air(struct kron_fronts *fronts, double drop)
-{
-    compensated_add(&fronts->all_air, -drop);
-    if (compensated_value(fronts->all_air) < 0.5 * fronts->summed_air) sum_air(fronts);
-}
-
-void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance)
-{
-    add_air(fronts, site, conductance);
-    compensated_add(&fronts->all_air, conductance);
-    fronts->summed_air = fmax(fronts->summed_air, compensated_value(fronts->all_air));
 }
 
 // --- elimination -------------------------------------------------------------------
@@ -259,21 +233,12 @@ static double sum_of(const double *row, int n)
            ((part[4] + part[5]) + (part[6] + part[7]));
 }
 
-// The flow to the eliminated site goes on into the air.
-static void raise_air(struct kron_fronts *fronts, const struct front *front,
-                      double share)
-{
-    for (int i = 0; i < front->n; i++)
-        add_air(fronts, front->site[i], fronts->row[i] * share);
-}
-
 void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
 {
-    const double air = fronts->air_conductance[site];
-    fronts->air_conductance[site] = 0;
+    const double air = air_take(fronts, site);
     const int front_index = merge_fronts(fronts, site);
     if (front_index < 0) {
-        lower_air(fronts, air);
+        air_lower(fronts, air);
         return;
     }
     extract_row(fronts, front_index, site);
@@ -283,9 +248,9 @@ void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
         dense_front_add_products(&front->dense, front->n, 1 / total, fronts->row);
         if (!front->dense.is_large && front->n > LARGE_FRONT)
             dense_front_enlarge(&front->dense, front->n, fronts->is_rounded);
-        if (air > 0) raise_air(fronts, front, air / total);
+        if (air > 0) air_raise(fronts, front, air / total);
     }
-    if (air > 0) lower_air(fronts, air * (air / total));
+    if (air > 0) air_lower(fronts, air * (air / total));
     if (front->n == 1) { // a dead end
         remove_membership(fronts, front->site[0], front_index);
         front->n = 0;
@@ -303,6 +268,9 @@ static void front_state(struct front *front, int n_site, int n_front,
     if (stream->restoring) {
         front->capacity = front->n;
         front->site = NEW_ARRAY(int, front->n);
+        front->air_place = NEW_ARRAY(int, front->n);
+        for (int i = 0; i < front->n; i++)
+            front->air_place[i] = -1;
     }
     stream_integers(stream, front->site, front->n, 0, n_site - 1);
     dense_front_state(&front->dense, front->n, stream);
@@ -342,9 +310,7 @@ static void memberships_state(struct kron_fronts *fronts,
 
 void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
 {
-    stream_numbers(stream, fronts->air_conductance, fronts->n_site);
-    stream_sums(stream, &fronts->all_air, 1);
-    stream_numbers(stream, &fronts->summed_air, 1);
+    air_state(fronts, stream);
     fronts_state(fronts, stream);
     memberships_state(fronts, stream);
 }

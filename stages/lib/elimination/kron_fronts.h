@@ -24,11 +24,19 @@ struct membership; // a site's place on a front
 // It owns its arrays, with room for the capacities named beside them.
 struct kron_fronts {
     int n_site;
-    bool is_rounded;            // links on large fronts are floats
-    double *air_conductance;    // (n_site) conductance to the air
-    struct compensated all_air; // its sum
+    bool is_rounded; // links on large fronts are floats
+    int *first;      // (n_site) its memberships, -1: none
+
+    // Conductances to the air, of sites that have one above 0, by places. Unused places
+    // have 0.
+    int *air_place; // (n_site) -1: none
+    int n_air, air_capacity;
+    double *air;   // (n_air)
+    int *air_site; // (n_air) whose place it is, or was last
+    int n_unused_air;
+    int *unused_air;            // (n_unused_air) places
+    struct compensated all_air; // the sum of all conductances
     double summed_air;          // the sum when all were last added up
-    int *first;                 // (n_site) its memberships, -1: none
 
     struct membership *membership;
     int n_membership, membership_capacity, unused_membership;
@@ -59,6 +67,13 @@ struct kron_fronts kron_fronts_init(int n_site, bool is_rounded);
 // between SITE and the air. CONDUCTANCE > 0, in any one unit.
 void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductance);
 void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance);
+
+// Conductance between SITE and the air.
+static inline double kron_fronts_air(const struct kron_fronts *fronts, int site)
+{
+    const int place = fronts->air_place[site];
+    return place < 0 ? 0 : fronts->air[place];
+}
 
 // Eliminates SITE. O(n^2) for a front of n sites.
 void kron_fronts_eliminate(struct kron_fronts *fronts, int site);

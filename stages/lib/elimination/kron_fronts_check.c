@@ -62,7 +62,7 @@ static bool fronts_fit(const struct kron_fronts *fronts)
 bool kron_fronts_fit(const struct kron_fronts *fronts)
 {
     for (int i = 0; i < fronts->n_site; i++)
-        if (!(fronts->air_conductance[i] >= 0)) return false;
+        if (!(kron_fronts_air(fronts, i) >= 0)) return false;
     if (!fronts_fit(fronts)) return false;
     bool *is_used = NEW_ARRAY(bool, fronts->n_membership);
     const bool fits = memberships_fit(fronts, is_used) && places_fit(fronts);

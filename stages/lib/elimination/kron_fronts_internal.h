@@ -4,6 +4,7 @@
 #define CRAQUELURE_KRON_FRONTS_INTERNAL_H
 
 #include "dense_front.h"
+#include "kron_fronts.h"
 
 // One for each site on each front, in a list per site (kron_fronts.first). Unused ones
 // are a list of their own, so that no index ever moves.
@@ -13,11 +14,12 @@ struct membership {
 };
 
 // Sites that are all linked with each other: entry (i, j) of `dense` is the conductance
-// between site[i] and site[j]. It owns SITE and DENSE. NEXT_UNUSED links those that
-// were merged into another.
+// between site[i] and site[j]. It owns its arrays and DENSE. NEXT_UNUSED links those
+// that were merged into another.
 struct front {
     int n, capacity;
     int *site;                // (n)
+    int *air_place;           // (n) of the site, as far as it is known here; -1
     struct dense_front dense; // of their links
     int next_unused;
 };
@@ -27,5 +29,15 @@ struct pair {
     int a, b;
     double conductance;
 };
+
+// kron_fronts_air.c. In AIR_TAKE the site has been eliminated, and leaves its
+// conductance to the air. AIR_RAISE adds SHARE of fronts->row to those of the front.
+// AIR_LOWER takes DROP from the sum of all.
+void air_init(struct kron_fronts *fronts);
+double air_take(struct kron_fronts *fronts, int site);
+void air_raise(struct kron_fronts *fronts, struct front *front, double share);
+void air_lower(struct kron_fronts *fronts, double drop);
+void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
+void air_free(struct kron_fronts *fronts);
 
 #endif
