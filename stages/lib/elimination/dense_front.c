@@ -236,17 +236,21 @@ static void take_doubles(struct dense_front *dense, int n, int p, double *row)
         dense_front_set(dense, i, p, dense_front_entry(dense, last, i));
 }
 
-// Column P from row BEGIN to row END - 1 of a panel, below the diagonal. Meanwhile it
-// fetches that of the next panel.
+// Column P of the rows from BEGIN to END - 1 of a panel, all below the diagonal, for
+// those of the last row. Meanwhile it fetches that of the next panel.
 static void take_in_panel(struct dense_front *dense, int begin, int end, int p,
                           int last, double *row)
 {
     float *own = float_at(dense, begin, p);
     const float *next = float_at(dense, begin + PANEL, p);
-    for (int i = begin; i < end; i++, own += STRIP, next += STRIP) {
-        __builtin_prefetch(next, 1);
-        row[i] = (double)*own;
-        if (i < last) *own = *float_at(dense, last, i);
+    for (int i = begin; i < end;) {
+        const float *from = float_at(dense, last, i);
+        const int strip = i + STRIP - i % STRIP, stop = strip < end ? strip : end;
+        for (; i < stop; i++, own += STRIP, next += STRIP) {
+            __builtin_prefetch(next, 1);
+            row[i] = (double)*own;
+            *own = *from++;
+        }
     }
 }
 
@@ -261,8 +265,9 @@ static void take_floats(struct dense_front *dense, int n, int p, double *row)
             own[c] = from[c];
         }
     }
-    for (int i = p + 1, end; i < n; i = end) {
-        end = (i / PANEL + 1) * PANEL < n ? (i / PANEL + 1) * PANEL : n;
+    if (p < last) row[last] = (double)*float_at(dense, last, p);
+    for (int i = p + 1, end; i < last; i = end) {
+        end = i + PANEL - i % PANEL < last ? i + PANEL - i % PANEL : last;
         take_in_panel(dense, i, end, p, last, row);
     }
 }

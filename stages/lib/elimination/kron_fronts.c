@@ -117,7 +117,8 @@ static void grow_front(struct front *front)
     front->capacity = front->capacity ? 2 * front->capacity : 4;
     const size_t n = (size_t)front->capacity;
     front->site = reallocate(front->site, n, sizeof *front->site);
-    front->air_place = reallocate(front->air_place, n, sizeof *front->air_place);
+    if (front->air_place)
+        front->air_place = reallocate(front->air_place, n, sizeof *front->air_place);
 }
 
 // SITE comes last on the front, without links.
@@ -127,7 +128,7 @@ static void add_member(struct kron_fronts *fronts, int front_index, int site)
     add_membership(fronts, site, front_index, front->n);
     if (front->n == front->capacity) grow_front(front);
     dense_front_add_row(&front->dense, front->n);
-    front->air_place[front->n] = fronts->air_place[site];
+    if (front->air_place) front->air_place[front->n] = fronts->air_place[site];
     front->site[front->n++] = site;
 }
 
@@ -139,7 +140,7 @@ static void remove_member(struct kron_fronts *fronts, int front_index, int p)
     const int last = --front->n;
     if (p == last) return;
     front->site[p] = front->site[last];
-    front->air_place[p] = front->air_place[last];
+    if (front->air_place) front->air_place[p] = front->air_place[last];
     fronts->membership[membership_of(fronts, front->site[p], front_index)].place = p;
 }
 
@@ -233,6 +234,12 @@ static double sum_of(const double *row, int n)
            ((part[4] + part[5]) + (part[6] + part[7]));
 }
 
+static void enlarge(const struct kron_fronts *fronts, struct front *front)
+{
+    dense_front_enlarge(&front->dense, front->n, fronts->is_rounded);
+    air_find_places(front);
+}
+
 void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
 {
     const double air = air_take(fronts, site);
@@ -246,8 +253,7 @@ void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
     const double total = air + sum_of(fronts->row, front->n);
     if (total > 0) {
         dense_front_add_products(&front->dense, front->n, 1 / total, fronts->row);
-        if (!front->dense.is_large && front->n > LARGE_FRONT)
-            dense_front_enlarge(&front->dense, front->n, fronts->is_rounded);
+        if (!front->dense.is_large && front->n > LARGE_FRONT) enlarge(fronts, front);
         if (air > 0) air_raise(fronts, front, air / total);
     }
     if (air > 0) air_lower(fronts, air * (air / total));
@@ -268,12 +274,10 @@ static void front_state(struct front *front, int n_site, int n_front,
     if (stream->restoring) {
         front->capacity = front->n;
         front->site = NEW_ARRAY(int, front->n);
-        front->air_place = NEW_ARRAY(int, front->n);
-        for (int i = 0; i < front->n; i++)
-            front->air_place[i] = -1;
     }
     stream_integers(stream, front->site, front->n, 0, n_site - 1);
     dense_front_state(&front->dense, front->n, stream);
+    if (stream->restoring && front->dense.is_large) air_find_places(front);
 }
 
 static void fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)

@@ -74,9 +74,18 @@ double air_take(struct kron_fronts *fronts, int site)
     return air;
 }
 
+void air_find_places(struct front *front)
+{
+    front->air_place = NEW_ARRAY(int, front->capacity);
+    for (int i = 0; i < front->n; i++)
+        front->air_place[i] = -1;
+}
+
 void air_raise(struct kron_fronts *fronts, struct front *front, double share)
 {
-    for (int i = 0; i < front->n; i++) {
+    for (int i = 0; i < front->n && !front->air_place; i++)
+        add_air(fronts, front->site[i], fronts->row[i] * share);
+    for (int i = 0; i < front->n && front->air_place; i++) {
         const int place = front->air_place[i];
         if (place >= 0) {
             fronts->air[place] += fronts->row[i] * share;

@@ -18,8 +18,8 @@ struct membership {
 // that were merged into another.
 struct front {
     int n, capacity;
-    int *site;                // (n)
-    int *air_place;           // (n) of the site, as far as it is known here; -1
+    int *site;      // (n)
+    int *air_place; // (n) of the site, -1: not known here; NULL if it is small
     struct dense_front dense; // of their links
     int next_unused;
 };
@@ -31,11 +31,13 @@ struct pair {
 };
 
 // kron_fronts_air.c. In AIR_TAKE the site has been eliminated, and leaves its
-// conductance to the air. AIR_RAISE adds SHARE of fronts->row to those of the front.
+// conductance to the air. AIR_FIND_PLACES
+// makes front->air_place. AIR_RAISE adds SHARE of fronts->row to those of the front.
 // AIR_LOWER takes DROP from the sum of all.
 void air_init(struct kron_fronts *fronts);
 double air_take(struct kron_fronts *fronts, int site);
 void air_raise(struct kron_fronts *fronts, struct front *front, double share);
+void air_find_places(struct front *front);
 void air_lower(struct kron_fronts *fronts, double drop);
 void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
 void air_free(struct kron_fronts *fronts);
