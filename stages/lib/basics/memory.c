@@ -6,6 +6,7 @@
 
 #include "basics/status.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -21,10 +22,13 @@ void *allocate(size_t count, size_t size)
 void *allocate_uncleared(size_t count, size_t size)
 {
     enum { CACHE_LINE = 64, HUGE_PAGE = 2 << 20 };
-    const size_t page = count * size < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
-    const size_t bytes = (count * size / page + 1) * page;
-    void *memory = aligned_alloc(page, bytes);
-    if (!memory) die(STATUS_INTERNAL, "out of memory: %zu bytes", bytes);
+    size_t wanted;
+    const bool is_too_large = __builtin_mul_overflow(count, size, &wanted);
+    const size_t page = wanted < HUGE_PAGE / 2 ? CACHE_LINE : HUGE_PAGE;
+    const size_t bytes = (wanted / page + 1) * page;
+    void *memory = is_too_large ? NULL : aligned_alloc(page, bytes);
+    if (!memory)
+        die(STATUS_INTERNAL, "out of memory: %zu elements of %zu bytes", count, size);
     if (page == HUGE_PAGE) (void)madvise(memory, bytes, MADV_HUGEPAGE);
     return memory;
 }
