@@ -25,9 +25,9 @@ void outcome_free(struct outcome *outcome);
 // outcome_free, also on failure. STATUS_NOT_CONVERGED: past the stability limit,
 // diverged, or grains crushed into each other; STATUS_BAD_DATA: an impossible scene or
 // a checkpoint of another. SCENE is not const because its number of threads is set;
-// results do not depend on THREADS.  A run that goes on from KEEPER's state gives the
-// same bytes as one that never stopped. What is due is recorded at the cycle nearest to
-// its moment, so times in the record are those of cycles.
+// results do not depend on THREADS. A run that continues from KEEPER's state gives the
+// same bytes as an uninterrupted one. A record is made at the cycle nearest to its due
+// time, and has the time of that cycle.
 enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
                       const struct vector *force, int threads,
                       void (*tell)(void *context, double fraction), void *context,

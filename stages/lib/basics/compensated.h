@@ -5,11 +5,11 @@
 //     total = fl(s + x),  lost += (larger - total) + smaller,
 // larger and smaller of s and x by size. -ffast-math would drop it all.
 //
-// When to use one: for a sum of many terms that is read on the way (time, evaporated
-// mass, the angle of a group), and for a number whose small differences matter
-// (pressures of pores that are nearly equal). Not for a residual that is made anew each
-// time. Two numbers and about four operations more a term; not safe for several threads
-// on one sum.
+// Use one for a sum of many terms that is read on the way (time, evaporated mass, the
+// angle of a group), and for a number whose small differences matter (pressures of
+// pores that are nearly equal). A residual that is computed anew each time needs none.
+// A sum takes two numbers, and about four operations more for each term. Threads must
+// not share one.
 #ifndef CRAQUELURE_COMPENSATED_H
 #define CRAQUELURE_COMPENSATED_H
 

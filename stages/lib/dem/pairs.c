@@ -218,7 +218,6 @@ static size_t lay_out(const struct dem *dem, struct pair_list *pairs, size_t n,
                       struct carving *from)
 {
     pairs->load = carve(from, n, sizeof *pairs->load);
-    pairs->has_shared_grain = carve(from, n, sizeof *pairs->has_shared_grain);
     pairs->idle = carve(from, n, sizeof *pairs->idle);
     if (dem->features & FEATURE_ROTATION) {
         pairs->moment = carve(from, n, sizeof *pairs->moment);
@@ -233,6 +232,7 @@ static size_t lay_out(const struct dem *dem, struct pair_list *pairs, size_t n,
     const size_t cleared = from->used;
     pairs->group = carve(from, n, sizeof *pairs->group);
     pairs->sum = carve(from, n, sizeof *pairs->sum);
+    pairs->has_shared_grain = carve(from, n, sizeof *pairs->has_shared_grain);
     if (dem->features & FEATURE_PAIR_LAWS)
         pairs->laws = carve(from, n, sizeof *pairs->laws);
     return cleared;

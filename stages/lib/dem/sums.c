@@ -8,7 +8,8 @@
 //     rows         one for each grain and the dummy, then one for each pair of a shared
 //                  grain, in the order of pairs
 // Each pair of a shared grain adds to a row of its own, and the rows are summed later
-// in the order of pairs. So every sum has one order, for any number of threads.
+// in the order of pairs. So the order of each sum does not depend on the number of
+// threads.
 #include "dem/engine.h"
 
 #include "basics/memory.h"

@@ -53,13 +53,18 @@ static inline size_t dense_front_row(const struct dense_front *dense, int i)
     return (PANEL * panel / 2 + row % PANEL) * PANEL * (panel + 1);
 }
 
+// From column 0 to column J in a row of floats.
+static inline size_t dense_front_strip_column(int j)
+{
+    return (size_t)(j / STRIP) * PANEL * STRIP + (size_t)(j % STRIP);
+}
+
 // Index of entry (I, J) of floats.
 static inline size_t dense_front_in_strip(const struct dense_front *dense, int i, int j)
 {
     const int in_panel = i % PANEL;
-    return dense_front_row(dense, i - in_panel) +
-           ((size_t)(j / STRIP) * PANEL + (size_t)in_panel) * STRIP +
-           (size_t)(j % STRIP);
+    return dense_front_row(dense, i - in_panel) + (size_t)in_panel * STRIP +
+           dense_front_strip_column(j);
 }
 
 static inline size_t dense_front_at(const struct dense_front *dense, int i, int j)

@@ -8,11 +8,10 @@
 // they are pending, so the digits do not depend on the vectors.
 //
 // Layout: entry (i, 0) is at dense_front_at(i, 0), those of its row are IN_ROW from it.
-// Pending rows lie by blocks
-// of BLOCK columns, and in a block one row after the other: pending[k][c] is number
-// k BLOCK + c % BLOCK of block c / BLOCK. `weight` has factor[k] pending[k][i] for
-// TILE_ROWS rows i, then for the next k; then the next tile. Entries are conductances
-// in the units of the network.
+// Pending rows lie by blocks of BLOCK columns, and in a block one row after the other:
+// pending[k][c] is number k BLOCK + c % BLOCK of block c / BLOCK. `weight` has
+// factor[k] pending[k][i] for TILE_ROWS rows i, then for the next k; then the next
+// tile. Entries are conductances in the units of the network.
 #include "dense_front.h"
 
 #include "basics/memory.h"
@@ -33,7 +32,7 @@ enum {
 static inline size_t in_row(int column)
 {
     if (sizeof(NUMBER) == sizeof(double)) return (size_t)column;
-    return (size_t)(column / STRIP) * STRIP * PANEL + (size_t)(column % STRIP);
+    return dense_front_strip_column(column);
 }
 
 // The block of column FIRST, a multiple of BLOCK.

@@ -110,8 +110,8 @@ void air_lower(struct kron_fronts *fronts, double drop)
     if (compensated_value(fronts->all_air) < 0.5 * fronts->summed_air) sum_air(fronts);
 }
 
-// By site, so that places need not be kept. What is no conductance counts as one, for
-// kron_fronts_fit to find.
+// Numbers are written by site, so a checkpoint keeps no places. A negative number or
+// NaN gets a place too: kron_fronts_fit then refuses it.
 void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
 {
     double *air = NEW_ARRAY(double, fronts->n_site);

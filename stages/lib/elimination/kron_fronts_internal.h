@@ -30,10 +30,10 @@ struct pair {
     double conductance;
 };
 
-// kron_fronts_air.c. In AIR_TAKE the site has been eliminated, and leaves its
-// conductance to the air. AIR_FIND_PLACES
-// makes front->air_place. AIR_RAISE adds SHARE of fronts->row to those of the front.
-// AIR_LOWER takes DROP from the sum of all.
+// kron_fronts_air.c. AIR_TAKE returns the conductance of SITE to the air, which is
+// eliminated, and frees its place. AIR_FIND_PLACES makes front->air_place. AIR_RAISE
+// adds SHARE of fronts->row to those of the front. AIR_LOWER takes DROP from the sum of
+// all.
 void air_init(struct kron_fronts *fronts);
 double air_take(struct kron_fronts *fronts, int site);
 void air_raise(struct kron_fronts *fronts, struct front *front, double share);

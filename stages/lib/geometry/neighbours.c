@@ -148,10 +148,11 @@ static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
     const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
     struct member_range range[27];
     const int n = ranges_around(&grid->cells, all->position[i], range);
-    for (int k = 0; k < n && repeats; k++)
-        meet_range(all, grid, range[k], i, own_level, true, found);
-    for (int k = 0; k < n && !repeats; k++)
-        meet_range(all, grid, range[k], i, own_level, false, found);
+    for (int k = 0; k < n; k++)
+        if (repeats)
+            meet_range(all, grid, range[k], i, own_level, true, found);
+        else
+            meet_range(all, grid, range[k], i, own_level, false, found);
 }
 
 int compare_pairs(const void *a, const void *b)

@@ -19,9 +19,9 @@
 //         return STATUS_OK;
 //     }
 // Who says a parameter, the strongest first: --set, the stage's section in the file of
-// -p, "conditions" of that scene for shared keys, the default. Everything that the user
-// got wrong is told before anything is computed, and outputs are tried before hours of
-// work.
+// -p, "conditions" of that scene for shared keys, the default. A stage reports
+// all mistakes of the user before it computes anything, and tries its outputs before it
+// works for hours.
 #ifndef CRAQUELURE_STAGE_H
 #define CRAQUELURE_STAGE_H
 
