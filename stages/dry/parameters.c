@@ -27,7 +27,7 @@ static const double COARSE_STEPS = 1e-3;
 
 // The same for films.step.
 enum { MAX_THROATS_BY_FLOWS = 3000 };
-static const double FLOW_STEPS = 2e-3;
+static const double FLOW_STEPS = 1e-2;
 
 #define AT(member) offsetof(struct dry_parameters, member)
 #define GIVEN AT(given)
@@ -74,7 +74,7 @@ const struct parameter dry_table[] = {
     {"films.step", PARAMETER_NUMBER, "1", "null", AT(conditions.films.step),
      BETWEEN(0, 1),
      .text = "fall of the saturation after which the flow in films is found again; 0: "
-             "at each event; null: 0 up to 3000 throats, 0.002 in larger networks"},
+             "at each event; null: 0 up to 3000 throats, 0.01 in larger networks"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
      .text = "viscous: the flow is computed again when the saturation of a throat has "

@@ -145,7 +145,7 @@ static void find_sources(struct emptying_times *times)
     if (film_supply_is_due(times)) film_supply_find(times);
     for (int l = 0; l < times->films->n_source; l++) {
         const int source = times->films->source[l];
-        if (!(times->films->drawn[source] > 0)) continue; // it has ended
+        if (source < 0 || !(times->films->drawn[source] > 0)) continue;
         const int k = timer_of(times, source);
         if (times->throat[k] < 0) start_timer(times, k);
     }
@@ -343,18 +343,6 @@ static void end_films(struct emptying_times *times)
         share_by_node(times, times->occupancy->wet[k]);
 }
 
-// Films draw nothing from what is no cluster any more, and may come to rings that no
-// throat feeds.
-static void change_films(struct emptying_times *times, int throat, int cluster)
-{
-    const struct occupancy *occupancy = times->occupancy;
-    if (occupancy->clusters.size[cluster] == 0) film_supply_end_cluster(times, cluster);
-    for (int end = 0; end < 2; end++) {
-        const int node = occupancy->network->throat_nodes[throat][end];
-        if (occupancy->liquid_beside[node] == 0) film_supply_bare_node(times, node);
-    }
-}
-
 // Returns whether a node dries.
 static bool empty_throat(struct emptying_times *times, int throat)
 {
@@ -365,7 +353,7 @@ static bool empty_throat(struct emptying_times *times, int throat)
     mark_dirty(times, k);
     occupancy_empty_throat(occupancy, throat);
     share_by_ends(times, throat);
-    if (times->films) change_films(times, throat, cluster);
+    if (times->films) film_supply_empty_throat(times, throat, cluster);
     if (occupancy->feeder && occupancy->clusters.size[cluster] == 0) end_films(times);
     for (int l = 0; l < occupancy->clusters.n_moved; l++)
         share_by_ends(times, occupancy->clusters.moved[l]);

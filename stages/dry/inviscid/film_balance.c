@@ -4,13 +4,12 @@
 // that are held stay 0. In both the true residual, from differences of compensated
 // levels, decides when it is enough.
 //
-// The preconditioner is kept while sites are held and freed, and from one moment of
-// drying to the next, since making one costs as much as some 40 iterations. With M the
+// The preconditioner is kept while few sites are held and freed, and from one moment of
+// drying to the next, since making one costs as much as some 20 iterations. With M the
 // approximate factor of the sites that were not held when it was made,
 //     z = M^-1 r                at those of them that are there and not held now,
 //         r / diagonal          at the others that are not held.
-// Both parts are symmetric and positive definite. A new factor replaces M once M has
-// cost more iterations than a new one would.
+// Both parts are symmetric and positive definite.
 #include "film_balance.h"
 
 #include "basics/memory.h"
@@ -18,6 +17,7 @@
 #include "sparse/cholesky.h"
 #include "sparse/conjugate_gradients.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -25,13 +25,14 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// A new factor is made once the old one has cost so many iterations more than a new one
-// would have: half of what making one takes, because the old one becomes worse.
-static const double WORTH = 20;
+// A new factor is made once so many sites have been held or freed since the last: each
+// costs an iteration or two, and a factor as much as some 20.
+enum { MOST_CHANGED = 20 };
 
-// Beyond so many sites each set of held sites has a factor of its own: iterations run
-// out of the cache there, and save less than they cost.
-enum { KEPT_MOST = 10000 };
+// Sites with more links (clusters around which films are everywhere) are no part of the
+// factor: eliminating them takes time that grows as the square of their links, and
+// without them it costs two iterations each.
+enum { MOST_LINKS = 100 };
 
 enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
 
@@ -41,8 +42,6 @@ struct film_factor {
     int *place;    // (n) of its rows, ascending
     int *site;     // (n) the site there now; -1: none
     double *b, *x; // (n)
-    double each;   // iterations in which a new one gained a decade; 0: unknown
-    double lost;   // iterations that it has cost beyond that
 };
 
 struct film_factor *film_factor_create(void)
@@ -76,13 +75,19 @@ struct free_sites {
     struct conductance_matrix matrix; // (n)
 };
 
-static void number_free(const struct film_flow *flow, struct free_sites *sites)
+static bool is_hub(const struct film_flow *flow, int i, int most)
+{
+    return flow->matrix->offset[i + 1] - flow->matrix->offset[i] > most;
+}
+
+static void number_free(const struct film_flow *flow, struct free_sites *sites,
+                        int most)
 {
     const int n_all = flow->matrix->n;
     sites->n = 0;
     for (int hold = 0; hold < 2; hold++)
         for (int i = 0, n = sites->n; i < n_all; i++) {
-            if (flow->held[i] != hold) continue;
+            if ((flow->held[i] || is_hub(flow, i, most)) != hold) continue;
             sites->order[i] = n;
             sites->site[n++] = i;
             if (!hold) sites->n = n;
@@ -90,13 +95,13 @@ static void number_free(const struct film_flow *flow, struct free_sites *sites)
 }
 
 // The rows of the sites that are not held, under their numbers.
-static struct free_sites free_sites_init(const struct film_flow *flow)
+static struct free_sites free_sites_init(const struct film_flow *flow, int most)
 {
     const struct conductance_matrix *all = flow->matrix;
     const size_t n_all = (size_t)all->n;
     struct free_sites sites = {.site = NEW_ARRAY(int, n_all),
                                .order = NEW_ARRAY(int, n_all)};
-    number_free(flow, &sites);
+    number_free(flow, &sites, most);
     struct conductance_matrix *matrix = &sites.matrix;
     *matrix =
         (struct conductance_matrix){.n = sites.n,
@@ -150,7 +155,7 @@ static void find_residual(const struct film_flow *flow, double *residual)
 
 static bool solve_directly(struct film_flow *flow, double tolerance, double *residual)
 {
-    struct free_sites sites = free_sites_init(flow);
+    struct free_sites sites = free_sites_init(flow, INT_MAX);
     struct cholesky *cholesky = NULL;
     struct reason reason;
     double *b = NEW_ARRAY(double, sites.n), *x = NEW_ARRAY(double, sites.n);
@@ -177,7 +182,7 @@ static bool solve_directly(struct film_flow *flow, double tolerance, double *res
 static void make_factor(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
-    struct free_sites sites = free_sites_init(flow);
+    struct free_sites sites = free_sites_init(flow, MOST_LINKS);
     forget(factor);
     factor->approximate = approximate_cholesky_create(&sites.matrix);
     factor->n = sites.n;
@@ -190,16 +195,22 @@ static void make_factor(const struct film_flow *flow)
     free_sites_free(&sites);
 }
 
-// Both lists of places ascend.
-static void find_sites(const struct film_flow *flow)
+// Both lists of places ascend. Returns how many sites are held that were not, or the
+// other way round, or have come or gone.
+static int find_sites(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
+    int there = 0, wanted = 0;
     for (int k = 0, i = 0; k < factor->n; k++) {
         while (i < flow->matrix->n && flow->place[i] < factor->place[k])
             i++;
         factor->site[k] =
             i < flow->matrix->n && flow->place[i] == factor->place[k] ? i : -1;
+        there += factor->site[k] >= 0 && !flow->held[i];
     }
+    for (int i = 0; i < flow->matrix->n; i++)
+        wanted += !flow->held[i] && !is_hub(flow, i, MOST_LINKS);
+    return abs(factor->n - there) + abs(wanted - there);
 }
 
 static void multiply(void *context, const double *x, double *image)
@@ -224,22 +235,15 @@ static void precondition(void *context, const double *residual, double *z)
             z[factor->site[k]] = factor->x[k];
 }
 
-static void note_cost(struct film_factor *factor, int iterations, double reduction)
-{
-    const double decades = -log10(reduction);
-    if (factor->each > 0)
-        factor->lost += iterations - factor->each * decades;
-    else
-        factor->each = fmax(1, iterations / decades);
-}
-
 static void correct(struct film_flow *flow, double reduction, const double *residual,
                     double *work)
 {
     const int n = flow->matrix->n;
-    struct film_factor *factor = flow->factor;
-    if (!factor->approximate || factor->lost > WORTH) make_factor(flow);
-    find_sites(flow);
+    const struct film_factor *factor = flow->factor;
+    if (!factor->approximate || find_sites(flow) > MOST_CHANGED) {
+        make_factor(flow);
+        find_sites(flow);
+    }
     double *r = work, *x = work + n;
     for (int i = 0; i < n; i++)
         r[i] = flow->held[i] ? 0 : residual[i];
@@ -248,10 +252,7 @@ static void correct(struct film_flow *flow, double reduction, const double *resi
         r[i] /= size;
     const struct linear_problem problem = {
         n, flow, multiply, precondition, {work + 2 * n, work + 3 * n, work + 4 * n}};
-    const int iterations =
-        conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
-    note_cost(factor, iterations, reduction);
-    flow->iterations += iterations;
+    flow->iterations += conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
     for (int i = 0; i < n; i++)
         compensated_add(&flow->level[i], size * x[i]);
 }
@@ -261,7 +262,6 @@ static bool solve_iteratively(struct film_flow *flow, double tolerance,
 {
     double *work = NEW_ARRAY(double, 5 * (size_t)flow->matrix->n);
     double left = imbalance(flow, residual);
-    if (flow->matrix->n > KEPT_MOST) forget(flow->factor);
     for (int most = MOST_CORRECTIONS; left > tolerance && most > 0; most--) {
         correct(flow, fmax(REDUCTION, MARGIN * tolerance / left), residual, work);
         find_residual(flow, residual);

@@ -24,7 +24,8 @@ struct film_flow {
     struct film_factor *factor; // of earlier flows, on some of the same places
     bool *held;                 // (n) the level is the least; first a guess, with one
                                 // such site in each connected part of the network
-    struct compensated *level;  // (n) first a guess where not held
+    struct compensated *level;  // (n) first a guess where not held, in each part of the
+                                // network no higher than the highest least there
     double *surplus;            // (n) 0 where not held
     int rounds, iterations;     // added to
 };

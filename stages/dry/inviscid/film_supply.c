@@ -16,6 +16,7 @@
 
 #include "basics/memory.h"
 #include "film_balance.h"
+#include "film_basins.h"
 #include "film_flow.h"
 #include "film_network.h"
 
@@ -26,30 +27,28 @@
 static const double TOLERANCE = 1e-6;
 // Between two solutions films draw at most so much more from the sources that are left.
 static const double MOST_STRAY = 2;
-
-// How far above its least a cluster floats. In hold_nearest: its site.
-struct heir {
-    double gap;
-    int cluster;
-};
+// They are found again before the step is over once films have failed to bring this
+// part of the drying rate, but not sooner than after such a part of the step: a film
+// that fails for a moment lets rings dry, which stay dry.
+static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
 
 struct film_supply *film_supply_create(const struct emptying_times *times)
 {
     const struct network *network = times->occupancy->network;
     struct film_supply *films = NEW_ARRAY(struct film_supply, 1);
-    *films =
-        (struct film_supply){.own = NEW_ARRAY(double, times->n_place),
-                             .drawn = NEW_ARRAY(double, times->n_place),
-                             .source = NEW_ARRAY(int, network->n_throat),
-                             .heir = NEW_ARRAY(int, network->n_throat),
-                             .reached = NEW_ARRAY(bool, network->n_node),
-                             .floats = NEW_ARRAY(bool, network->n_throat),
-                             .level = NEW_ARRAY(struct compensated, times->n_place),
-                             .is_known = NEW_ARRAY(bool, times->n_place),
-                             .evaporates = NEW_ARRAY(double, times->n_place),
-                             .factor = film_factor_create(),
-                             .scale = 1,
-                             .is_due = true};
+    *films = (struct film_supply){
+        .own = NEW_ARRAY(double, times->n_place),
+        .drawn = NEW_ARRAY(double, times->n_place),
+        .source = NEW_ARRAY(int, network->n_throat),
+        .reached = NEW_ARRAY(bool, network->n_node),
+        .floats = NEW_ARRAY(bool, network->n_throat),
+        .level = NEW_ARRAY(struct compensated, times->n_place),
+        .is_known = NEW_ARRAY(bool, times->n_place),
+        .evaporates = NEW_ARRAY(double, times->n_place),
+        .factor = film_factor_create(),
+        .basins = film_basins_create(times->n_place, network->n_throat),
+        .scale = 1,
+        .is_due = true};
     for (int p = 0; p < times->n_place; p++)
         films->own[p] = 1;
     return films;
@@ -61,13 +60,13 @@ void film_supply_free(struct film_supply *films)
     free(films->own);
     free(films->drawn);
     free(films->source);
-    free(films->heir);
     free(films->reached);
     free(films->floats);
     free(films->level);
     free(films->is_known);
     free(films->evaporates);
     film_factor_free(films->factor);
+    film_basins_free(films->basins);
     free(films);
 }
 
@@ -76,12 +75,20 @@ static double saturation_now(const struct occupancy *occupancy)
     return compensated_value(occupancy->total_liquid) / occupancy->capacity;
 }
 
+static bool is_failing(const struct emptying_times *times)
+{
+    const struct film_supply *films = times->films;
+    return films->lost + film_basins_failing(films->basins) >
+           MOST_FAILING * vapour_rate(&times->occupancy->vapour);
+}
+
 bool film_supply_is_due(const struct emptying_times *times)
 {
     const struct film_supply *films = times->films;
     const double step = times->occupancy->film_law->step;
-    return films->is_due || !(step > 0) ||
-           films->saturation - saturation_now(times->occupancy) >= step;
+    const double fallen = films->saturation - saturation_now(times->occupancy);
+    return films->is_due || !(step > 0) || fallen >= step ||
+           (fallen >= SHORTEST * step && is_failing(times));
 }
 
 // --- finding -----------------------------------------------------------------------
@@ -99,16 +106,10 @@ static double least_level(const struct emptying_times *times, int cluster)
     return radius * radius * radius;
 }
 
-static int nearer(const void *a, const void *b)
-{
-    const struct heir *x = a, *y = b;
-    if (x->gap != y->gap) return x->gap < y->gap ? -1 : 1;
-    return (x->cluster > y->cluster) - (x->cluster < y->cluster);
-}
-
-// In each part of the network, holds the cluster of the largest least.
+// In each part of the network, holds the cluster of the largest least. No level is
+// above it.
 static void hold_highest(const struct film_network *network, int n_throat,
-                         const double *least, bool *held)
+                         const double *least, bool *held, struct compensated *level)
 {
     int *highest = NEW_ARRAY(int, network->n_site); // of a part, by its root
     for (int i = 0; i < network->n_site; i++)
@@ -120,27 +121,12 @@ static void hold_highest(const struct film_network *network, int n_throat,
     }
     for (int i = 0; i < network->n_site; i++)
         if (highest[i] >= 0) held[highest[i]] = true;
-    free(highest);
-}
-
-// As many clusters as in the last solution are held: those whose least is now highest
-// above the level that they had, or least below it.
-static void hold_nearest(const struct film_network *network, int n_throat,
-                         struct film_flow *flow)
-{
-    struct heir *cluster = NEW_ARRAY(struct heir, network->n_site);
-    int n = 0, n_held = 0;
     for (int i = 0; i < network->n_site; i++) {
-        if (network->place[i] >= n_throat) continue;
-        n_held += flow->held[i];
-        cluster[n++] =
-            (struct heir){compensated_value(flow->level[i]) - flow->least[i], i};
-        flow->held[i] = false;
+        const double most = least[highest[network->root[i]]];
+        if (compensated_value(level[i]) > most)
+            level[i] = (struct compensated){.value = most};
     }
-    if (n > 1) qsort(cluster, (size_t)n, sizeof *cluster, nearer);
-    for (int k = 0; k < n_held; k++)
-        flow->held[cluster[k].cluster] = true;
-    free(cluster);
+    free(highest);
 }
 
 // Sites that were not there in the last solution begin with the mean level of those
@@ -187,12 +173,13 @@ static void pose(const struct emptying_times *times, const struct film_network *
             flow->held[i] = !films->reached[place - n_throat];
         }
         unknown[i] = !films->is_known[place];
-        if (!unknown[i]) flow->level[i] = films->level[place];
+        if (unknown[i]) continue;
+        flow->level[i] = films->level[place];
+        compensated_add(&flow->level[i], -film_basins_fall(films->basins, place));
     }
     guess_levels(network, unknown, flow->level);
     free(unknown);
-    hold_nearest(network, n_throat, flow);
-    hold_highest(network, n_throat, least, flow->held);
+    hold_highest(network, n_throat, least, flow->held, flow->level);
 }
 
 static void note_site(struct film_supply *films, int place, int n_throat, double taken,
@@ -210,20 +197,16 @@ static void note_site(struct film_supply *films, int place, int n_throat, double
     }
 }
 
-// Who supplies, in this order, when sources end before the next solution.
-static void list_heirs(struct film_supply *films, const struct film_network *network,
-                       int n_throat, const struct film_flow *flow)
+// Each source has a basin, numbered alike.
+static void find_basins(struct film_supply *films, const struct film_flow *flow,
+                        int n_throat)
 {
-    struct heir *heir = NEW_ARRAY(struct heir, network->n_site);
-    films->n_heir = films->next_heir = 0;
-    for (int i = 0; i < network->n_site; i++)
-        if (network->place[i] < n_throat && !flow->held[i])
-            heir[films->n_heir++] = (struct heir){
-                compensated_value(flow->level[i]) - flow->least[i], network->place[i]};
-    if (films->n_heir > 1) qsort(heir, (size_t)films->n_heir, sizeof *heir, nearer);
-    for (int k = 0; k < films->n_heir; k++)
-        films->heir[k] = heir[k].cluster;
-    free(heir);
+    int *site = NEW_ARRAY(int, films->n_source), n = 0;
+    for (int i = 0; i < flow->matrix->n; i++)
+        if (flow->place[i] < n_throat && films->drawn[flow->place[i]] > 0)
+            site[n++] = i;
+    film_basins_find(films->basins, flow, n, site);
+    free(site);
 }
 
 // What each reservoir evaporates, and nothing known of films.
@@ -238,6 +221,7 @@ static void begin(struct emptying_times *times)
     }
     films->n_source = 0;
     films->is_due = false;
+    films->lost = 0;
     films->saturation = saturation_now(times->occupancy);
 }
 
@@ -282,7 +266,7 @@ void film_supply_find(struct emptying_times *times)
         note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
                   flow.surplus[i]);
     }
-    list_heirs(films, &network, n_throat, &flow);
+    find_basins(films, &flow, n_throat);
     films->solutions += n > 0;
     free(taken);
     free(least);
@@ -309,7 +293,7 @@ static void find_scale(struct emptying_times *times)
         if (owner >= n_throat) films->evaporation += part;
     }
     for (int l = 0; l < films->n_source; l++)
-        drawn += films->drawn[films->source[l]];
+        if (films->source[l] >= 0) drawn += films->drawn[films->source[l]];
     films->scale = drawn > 0 ? brought / drawn : 1;
     if (!(drawn > 0) && brought > 0)
         for (int p = 0; p < times->n_place; p++)
@@ -331,27 +315,84 @@ void film_supply_set_rates(struct emptying_times *times)
 
 // --- between solutions -------------------------------------------------------------
 
-void film_supply_bare_node(struct emptying_times *times, int node)
+// What is not a source, and not in films.
+static void set_apart(struct film_supply *films, int cluster)
 {
-    times->films->own[times->occupancy->network->n_throat + node] = 0;
-    times->films->reached[node] = true;
-}
-
-void film_supply_end_cluster(struct emptying_times *times, int cluster)
-{
-    struct film_supply *films = times->films;
-    const double drawn = films->drawn[cluster];
     films->own[cluster] = 1;
     films->drawn[cluster] = 0;
     films->floats[cluster] = false;
     films->is_known[cluster] = false;
-    while (drawn > 0 && films->next_heir < films->n_heir) {
-        const int heir = films->heir[films->next_heir++];
-        if (times->occupancy->clusters.size[heir] == 0 || films->drawn[heir] > 0)
-            continue;
-        films->own[heir] = 1;
-        films->drawn[heir] = drawn;
-        films->source[films->n_source++] = heir;
+    film_basins_set(films->basins, cluster, -1, 0);
+}
+
+// CLUSTER is, or has parted from, PARENT, and has the level that it had.
+static void let_float(struct emptying_times *times, int cluster, int parent, int basin)
+{
+    struct film_supply *films = times->films;
+    films->own[cluster] = 0;
+    films->drawn[cluster] = 0;
+    films->floats[cluster] = true;
+    films->is_known[cluster] = true;
+    films->level[cluster] = films->level[parent];
+    film_basins_set(films->basins, cluster, basin,
+                    compensated_value(films->level[cluster]) -
+                        least_level(times, cluster));
+}
+
+// What the basin supplies goes to the cluster whose turn it is.
+static void choose_source(struct film_supply *films, int basin, double drawn)
+{
+    const int before = films->source[basin];
+    const int source = film_basins_supplier(films->basins, basin);
+    films->source[basin] = source;
+    if (before >= 0 && before != source && films->drawn[before] > 0) {
+        films->own[before] = films->drawn[before] = 0;
+        films->floats[before] = true;
+    }
+    if (source < 0) {
+        films->lost += drawn;
         return;
     }
+    films->own[source] = 1;
+    films->drawn[source] = drawn;
+    films->floats[source] = false;
+}
+
+// Films may come to rings that no throat feeds any more.
+static void bare_nodes(struct film_supply *films, const struct occupancy *occupancy,
+                       int throat)
+{
+    for (int end = 0; end < 2; end++) {
+        const int node = occupancy->network->throat_nodes[throat][end];
+        if (occupancy->liquid_beside[node] > 0) continue;
+        films->own[occupancy->network->n_throat + node] = 0;
+        films->reached[node] = true;
+    }
+}
+
+static void part(struct emptying_times *times, int cluster, int parent, int basin)
+{
+    if (basin >= 0 && times->occupancy->clusters.size[cluster] > 0)
+        let_float(times, cluster, parent, basin);
+    else
+        set_apart(times->films, cluster);
+}
+
+void film_supply_empty_throat(struct emptying_times *times, int throat, int cluster)
+{
+    struct film_supply *films = times->films;
+    const struct clusters *clusters = &times->occupancy->clusters;
+    const int basin = film_basins_of(films->basins, cluster);
+    const int source = basin >= 0 ? films->source[basin] : -1;
+    const double drawn = source >= 0 ? films->drawn[source] : 0;
+    bare_nodes(films, times->occupancy, throat);
+    films->is_due |= films->n_source == 0; // the first film, perhaps
+    for (int l = 0, last = -1; l < clusters->n_moved; l++) {
+        const int moved = clusters->of_throat[clusters->moved[l]];
+        if (moved != last) part(times, moved, cluster, basin);
+        last = moved;
+    }
+    if (basin < 0 && clusters->size[cluster] > 0) return;
+    part(times, cluster, cluster, basin);
+    if (basin >= 0) choose_source(films, basin, drawn);
 }

@@ -17,9 +17,9 @@ struct film_supply {
     double scale;
     double evaporation; // scaled, of nodes without liquid in throats, that films bring
     int n_source;
-    int *source; // (n_source) clusters from which films draw
-    int n_heir, next_heir;
-    int *heir; // (n_heir) clusters that float, those nearest to their least first
+    int *
+        source; // (n_source) clusters from which films draw, by basin; -1: none is left
+    struct film_basins *basins;
 
     bool *reached;              // (n_node) films reach it: its rings keep their liquid
     bool *floats;               // (n_throat) by cluster: films bring all it evaporates
@@ -28,6 +28,7 @@ struct film_supply {
     double *evaporates;         // (n_place) scaled, when last found; 0: no shares
     struct film_factor *factor; // kept from one solution to the next
     bool is_due;                // reservoirs have changed so that flows must be found
+    double lost;                // drawn since from basins that have no cluster any more
     double saturation;          // when last found
     bool failed;                // they were not
     int64_t solutions;          // so far
@@ -47,9 +48,7 @@ void film_supply_find(struct emptying_times *times);
 // Replaces the sums of shares in TIMES->rate by what reservoirs lose.
 void film_supply_set_rates(struct emptying_times *times);
 
-// No throat holds liquid at NODE any more. CLUSTER has none at all: another one, which
-// is SOURCE then, supplies what films drew from it.
-void film_supply_bare_node(struct emptying_times *times, int node);
-void film_supply_end_cluster(struct emptying_times *times, int cluster);
+// THROAT of CLUSTER has emptied, and what has parted from it are clusters of their own.
+void film_supply_empty_throat(struct emptying_times *times, int throat, int cluster);
 
 #endif

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who supplies films between two solutions of their flow. Each site has a source from
+// which most of its liquid comes: those of one source are its basin. When the source
+// loses a throat, its level changes, and while the flow is nearly the same, all levels
+// of the basin change with it. So the cluster whose least is now highest above, or
+// least below, the level that it had supplies the basin.
+#ifndef CRAQUELURE_FILM_BASINS_H
+#define CRAQUELURE_FILM_BASINS_H
+
+#include "film_flow.h"
+
+struct film_basins;
+
+// For clusters numbered below N_CLUSTER among N_PLACE places. No place is in a basin
+// yet. The caller frees it with film_basins_free; NULL is allowed.
+struct film_basins *film_basins_create(int n_place, int n_cluster);
+void film_basins_free(struct film_basins *basins);
+
+// Of FLOW, solved; SOURCE (N_SOURCE) are the sites that feed others.
+void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
+                      int n_source, const int *source);
+
+// The basin of PLACE; -1: none.
+int film_basins_of(const struct film_basins *basins, int place);
+
+// CLUSTER is in BASIN (-1: in none), its level GAP above its least. It does not supply.
+void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap);
+
+// The cluster of BASIN of the least gap, which supplies from now on; -1: none is left.
+int film_basins_supplier(struct film_basins *basins, int basin);
+
+// How far levels at PLACE have fallen since the solution.
+double film_basins_fall(const struct film_basins *basins, int place);
+
+// What nodes evaporate that films have no longer reached at some moment since then.
+double film_basins_failing(const struct film_basins *basins);
+
+#endif
