@@ -51,7 +51,7 @@ static void record_step(struct run *run)
 static enum status refuse_films(const struct run *run, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "rings=films: the flow in films was not found to 1e-10 of the drying "
+                  "rings=films: the flow in films was not found to 1e-6 of the drying "
                   "rate at saturation %g",
                   network_saturation(run));
 }
