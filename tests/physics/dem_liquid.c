@@ -251,7 +251,7 @@ static double norm_of_momentum(const struct dem *dem, double *all)
 {
     double size = 0;
     for (int i = 0; i < dem->n_particle; i++)
-        size += dem->mass[i] * norm(as_vector(dem->motion[i].linear));
+        size += dem->mass[i] * norm(as_vector(velocity_of(dem, i)));
     *all = size * dem->unit.mass * dem->unit.length / dem->unit.time;
     return norm(dem_momentum(dem).linear);
 }

@@ -35,7 +35,7 @@ void dem_free(struct dem *dem)
                            dem->index,
                            dem->start,
                            dem->place,
-                           dem->motion,
+                           dem->velocity, // and spins
                            dem->external,
                            dem->applied,
                            dem->mobility,
@@ -101,10 +101,9 @@ void dem_set_velocity(struct dem *dem, const struct vector *velocity,
         const int32_t who = dem->id[i];
         for (int axis = 0; axis < 3 && dem->mobility[i][0] > 0; axis++) {
             if (velocity)
-                dem->motion[i].linear[axis] = component(velocity[who], axis) / unit;
+                velocity_of(dem, i)[axis] = component(velocity[who], axis) / unit;
             if (spin)
-                dem->motion[i].angular[axis] =
-                    component(spin[who], axis) * dem->unit.time;
+                spin_of(dem, i)[axis] = component(spin[who], axis) * dem->unit.time;
         }
     }
 }
@@ -113,7 +112,7 @@ void dem_stop(struct dem *dem, const bool *which)
 {
     for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3 && which[dem->id[i]] && !is_driven(dem, i); axis++)
-            dem->motion[i].linear[axis] = dem->motion[i].angular[axis] = 0;
+            velocity_of(dem, i)[axis] = spin_of(dem, i)[axis] = 0;
 }
 
 void dem_set_friction(struct dem *dem, double friction)

@@ -80,8 +80,8 @@ static void start_group(struct dem *dem, int g)
     for (int i = 0; i < dem->n_particle; i++) {
         if (dem->group_of[i] != g + 1) continue;
         const struct vector v = add(group->velocity, cross(spin, dem->lever[i]));
-        memcpy(dem->motion[i].linear, &v, sizeof v);
-        memcpy(dem->motion[i].angular, &spin, sizeof spin);
+        memcpy(velocity_of(dem, i), &v, sizeof v);
+        memcpy(spin_of(dem, i), &spin, sizeof spin);
     }
 }
 
@@ -136,9 +136,8 @@ void advance_groups(struct dem *dem)
 
 double group_power(const struct dem *dem, int i, const struct motion *load)
 {
-    const struct motion *motion = &dem->motion[i];
-    return -dot(as_vector(load->linear), as_vector(motion->linear)) -
-           dot(as_vector(load->angular), as_vector(motion->angular));
+    return -dot(as_vector(load->linear), as_vector(velocity_of(dem, i))) -
+           dot(as_vector(load->angular), as_vector(spin_of(dem, i)));
 }
 
 struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *load)
@@ -146,7 +145,6 @@ struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *
     const struct driven_group *group = group_of_grain(dem, i);
     const double dt = dem->time_step, limit = MAX_STEP / dt;
     struct place *place = &dem->place[i];
-    struct motion *motion = &dem->motion[i];
     const struct vector u = add(group->moved, turned_by(group->is.axis, group->sine,
                                                         group->versine, dem->lever[i]));
     const struct vector v = scale(1 / dt, subtract(u, as_vector(place->displacement)));
@@ -160,8 +158,8 @@ struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *
     const double half = dem->balance_energy ? 0.5 * dt : 0;
     if (half > 0 && dem->cycle > 0)
         dem->grain_ledger[i][0] += half * group_power(dem, i, load);
-    memcpy(motion->linear, &v, sizeof v);
-    memcpy(motion->angular, &spin, sizeof spin);
+    memcpy(velocity_of(dem, i), &v, sizeof v);
+    memcpy(spin_of(dem, i), &spin, sizeof spin);
     memcpy(place->displacement, &u, sizeof u);
     if (half > 0) dem->grain_ledger[i][0] += half * group_power(dem, i, load);
     return (struct max_speed){.square = square, .valid = true};

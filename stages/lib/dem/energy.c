@@ -20,12 +20,14 @@
 // Velocities at the time of the forces: half a step back.
 static struct motion motion_with_forces(const struct dem *dem, int particle)
 {
-    struct motion now = dem->motion[particle];
+    const double *velocity = velocity_of(dem, particle), *spin = spin_of(dem, particle);
+    struct motion now = {0};
     const struct motion load = load_on_grain(dem, particle);
     const double half = 0.5 * places_ahead(dem) * dem->time_step;
     for (int k = 0; k < 3; k++) {
-        now.linear[k] -= half * dem->mobility[particle][0] * load.linear[k];
-        now.angular[k] -= half * dem->mobility[particle][1] * load.angular[k];
+        now.linear[k] =
+            velocity[k] - half * dem->mobility[particle][0] * load.linear[k];
+        now.angular[k] = spin[k] - half * dem->mobility[particle][1] * load.angular[k];
     }
     return now;
 }
@@ -89,7 +91,7 @@ double booked_ahead(const struct dem *dem, int i)
         return 0.5 * step * group_power(dem, i, &load);
     }
     if (!(dem->mobility[i][0] > 0)) return 0;
-    return step * dot(as_vector(dem->external[i]), as_vector(dem->motion[i].linear));
+    return step * dot(as_vector(dem->external[i]), as_vector(velocity_of(dem, i)));
 }
 
 static struct dem_energy ledger_totals(const struct dem *dem)
@@ -144,10 +146,10 @@ struct dem_momentum dem_momentum(const struct dem *dem)
     struct vector linear = {0, 0, 0}, angular = {0, 0, 0};
     for (int i = 0; i < dem->n_particle; i++) {
         if (is_driven(dem, i)) continue;
-        const struct vector p = scale(dem->mass[i], as_vector(dem->motion[i].linear));
+        const struct vector p = scale(dem->mass[i], as_vector(velocity_of(dem, i)));
         const struct vector x =
             add(dem->start[i], as_vector(dem->place[i].displacement));
-        const struct vector spin = as_vector(dem->motion[i].angular);
+        const struct vector spin = as_vector(spin_of(dem, i));
         linear = add(linear, p);
         angular = add(angular, add(cross(x, p), scale(inertia(dem, i), spin)));
     }

@@ -73,7 +73,8 @@ struct place {
     double radius;
 };
 
-// Velocity and angular velocity, or force and moment; the fourth of each is 0.
+// Velocity and angular velocity of one grain, or force and moment; the fourth of each
+// is 0.
 struct motion {
     _Alignas(CACHE_LINE) double linear[4];
     double angular[4];
@@ -209,11 +210,15 @@ struct dem {
     pair_gaps *gaps;         // for this processor
 
     int n_particle;
-    int32_t *id;            // (n_particle) index in the packing
-    int32_t *index;         // (n_particle) the inverse
-    struct vector *start;   // (n_particle) where each began
-    struct place *place;    // (n_particle+1), the last is the grain that is not there
-    struct motion *motion;  // (n_particle+1) half a step behind the places
+    int32_t *id;          // (n_particle) index in the packing
+    int32_t *index;       // (n_particle) the inverse
+    struct vector *start; // (n_particle) where each began
+    struct place *place;  // (n_particle+1), the last is the grain that is not there
+    // (n_particle+1) velocities and angular velocities, half a step behind the places:
+    // records of four, x y z 0, MOTION_STRIDE doubles apart [place_motions].
+    // velocity_of and spin_of find those of a grain.
+    double *velocity, *spin;
+    size_t motion_stride;
     double (*external)[4];  // (n_particle) force, weight included
     bool has_external;      // some external force is not 0
     struct vector *applied; // (n_particle) without weight; NULL: none
@@ -525,6 +530,17 @@ static inline int groups_in_chunk(const struct dem *dem)
 static inline bool walls_are_shared(const struct dem *dem)
 {
     return dem->n_chunk > 1 && dem->n_wall_pair >= MIN_PARALLEL_WALL_PAIRS;
+}
+
+// The velocity and the angular velocity of a grain, of four.
+static inline double *velocity_of(const struct dem *dem, int i)
+{
+    return dem->velocity + dem->motion_stride * (size_t)i;
+}
+
+static inline double *spin_of(const struct dem *dem, int i)
+{
+    return dem->spin + dem->motion_stride * (size_t)i;
 }
 
 static inline struct vector as_vector(const double a[3])

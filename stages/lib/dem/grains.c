@@ -149,7 +149,8 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
     const uint8_t *const is_shared = dem->is_shared;
     const double(*const mobility)[2] = dem->mobility;
     const size_t next_mobility = dem->equal_mobility ? 0 : 1;
-    struct motion *const motion = dem->motion;
+    double *const velocities = dem->velocity, *const spins = dem->spin;
+    const size_t stride = turns ? 8 : 4;
     struct place *const place = dem->place;
     const bool balance = dem->balance_energy, any_driven = dem->group_of;
     const double4 zero = {0};
@@ -167,8 +168,8 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
             continue;
         }
         const double *mobile = mobility[next_mobility * (size_t)i];
-        double4 *velocity = (double4 *)motion[i].linear,
-                *spin = (double4 *)motion[i].angular;
+        double4 *velocity = (double4 *)(velocities + stride * (size_t)i),
+                *spin = (double4 *)(spins + stride * (size_t)i);
         struct load net = {sum.force + zero, sum.moment + zero}; // +0, as damped has it
         if (share > 0) {
             net.force = damped(sum.force, *velocity, share);

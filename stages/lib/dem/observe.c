@@ -63,13 +63,13 @@ void dem_velocities(const struct dem *dem, struct vector *velocity)
 {
     const double unit = dem->unit.length / dem->unit.time;
     for (int i = 0; i < dem->n_particle; i++)
-        velocity[dem->id[i]] = scale(unit, as_vector(dem->motion[i].linear));
+        velocity[dem->id[i]] = scale(unit, as_vector(velocity_of(dem, i)));
 }
 
 void dem_spins(const struct dem *dem, struct vector *spin)
 {
     for (int i = 0; i < dem->n_particle; i++)
-        spin[dem->id[i]] = scale(1 / dem->unit.time, as_vector(dem->motion[i].angular));
+        spin[dem->id[i]] = scale(1 / dem->unit.time, as_vector(spin_of(dem, i)));
 }
 
 void dem_loads(const struct dem *dem, struct vector *force, struct vector *moment)
@@ -163,7 +163,7 @@ static struct dem_contact wall_contact(const struct dem *dem,
     const struct dem_bridge bridge = bridge_of_wall_pair(dem, pair);
     const struct vector centre =
         subtract(position_now(dem, i), scale(places_ahead(dem) * dem->time_step,
-                                             as_vector(dem->motion[i].linear)));
+                                             as_vector(velocity_of(dem, i))));
     return (struct dem_contact){
         .particle = {dem->id[i], -1 - pair->wall},
         .bond = -1,

@@ -14,7 +14,7 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
     const struct vector moved = subtract(as_vector(dem->place[j].displacement),
                                          as_vector(dem->place[i].displacement));
     const struct vector moving =
-        subtract(as_vector(dem->motion[j].linear), as_vector(dem->motion[i].linear));
+        subtract(as_vector(velocity_of(dem, j)), as_vector(velocity_of(dem, i)));
     const struct vector apart = subtract(moved, scale(back * dem->time_step, moving));
     const struct vector start = lane_vector(g->separation, lane);
     const struct vector separation = add(start, apart);
@@ -31,7 +31,7 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
                                           : geometry.overlap;
     const struct vector centre =
         subtract(add(dem->start[i], as_vector(dem->place[i].displacement)),
-                 scale(back * dem->time_step, as_vector(dem->motion[i].linear)));
+                 scale(back * dem->time_step, as_vector(velocity_of(dem, i))));
     geometry.position = add(centre, scale(radius - 0.5 * shared, geometry.normal));
     return geometry;
 }

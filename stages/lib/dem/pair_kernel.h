@@ -195,7 +195,7 @@ SIMD_INLINE void fetch_ahead(const struct dem *dem, int k, unsigned features)
     for (int lane = 0; lane < PAIRS_IN_GROUP; lane++) {
         const uint32_t j = second[lane];
         __builtin_prefetch(record((const double *)dem->place, 4, j));
-        __builtin_prefetch(record((const double *)dem->motion, 8, j));
+        __builtin_prefetch(record(dem->velocity, stride, j));
         __builtin_prefetch(record(dem->sum, stride, j), 1);
     }
 }

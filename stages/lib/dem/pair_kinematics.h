@@ -233,13 +233,14 @@ SIMD_INLINE struct pair_motion find_pair_motion(const struct dem *dem, int k, in
     const struct pair_group *g = dem->pairs.group + k;
     const uint32_t *i = reload_pointer(g->first + at),
                    *j = reload_pointer(g->second + at);
-    const double *motions = (const double *)dem->motion;
+    const size_t stride = features & FEATURE_ROTATION ? 8 : 4;
     struct vectorw velocity, apart;
     if (features & FEATURE_PARALLEL_BOND)
-        fetch_changes(motions, i, j, &velocity, &apart);
+        fetch_changes(dem->velocity, i, j, &velocity, &apart);
     else
-        velocity =
-            transpose(subtract_rows(fetch(motions, 8, j), fetch(motions, 8, i))).xyz;
+        velocity = transpose(subtract_rows(fetch(dem->velocity, stride, j),
+                                           fetch(dem->velocity, stride, i)))
+                       .xyz;
     struct pair_motion m = {.stretch = pair.stretch};
     m.rotation.normal = scale3(pair.inverse, pair.separation);
     m.overlap = load(g->overlap + at) - m.stretch;
@@ -259,9 +260,9 @@ SIMD_INLINE struct pair_motion find_pair_motion(const struct dem *dem, int k, in
     const struct spin_terms spins =
         features & FEATURE_PARALLEL_BOND
             ? find_bonded_spin_terms(
-                  &m, transpose(fetch(motions + 4, 8, reload_pointer(i))).xyz, apart,
+                  &m, transpose(fetch(dem->spin, 8, reload_pointer(i))).xyz, apart,
                   features)
-            : find_spin_terms(&m, motions + 4, i, j, features);
+            : find_spin_terms(&m, dem->spin, i, j, features);
     find_shear_motion(&m, &spins, velocity, pair.inverse, time_step, features);
     return m;
 }

@@ -74,7 +74,7 @@ static double fastest_surface(const struct dem *dem)
 {
     double fastest = 0;
     for (int i = 0; i < dem->n_particle; i++) {
-        const double *v = dem->motion[i].linear, *w = dem->motion[i].angular;
+        const double *v = velocity_of(dem, i), *w = spin_of(dem, i);
         const double turning = sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
         fastest = fmax(fastest, sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) +
                                     turning * dem->place[i].radius);

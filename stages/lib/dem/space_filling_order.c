@@ -97,7 +97,10 @@ static void reorder_grains(struct dem *dem, const struct keyed *order)
     REORDER(dem->id);
     REORDER(dem->start);
     REORDER(dem->place);
-    REORDER(dem->motion);
+    const size_t each = dem->motion_stride * sizeof *dem->velocity;
+    reorder(dem->velocity, each, order,
+            dem->n_particle); // and spins, if they lie between
+    if (dem->motion_stride == 4) reorder(dem->spin, each, order, dem->n_particle);
     REORDER(dem->external);
     REORDER(dem->applied);
     REORDER(dem->mobility);

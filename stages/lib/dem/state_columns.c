@@ -100,6 +100,7 @@ struct where {
 #define OF(array, type, member)                                                        \
     ((struct where){array, sizeof(type), offsetof(type, member)})
 #define WHOLE(array) ((struct where){array, sizeof *(array), 0})
+#define RECORDS(array, each) ((struct where){array, (each) * sizeof *(array), 0})
 
 static struct column *add_numbers(struct column_list *list, const char *name,
                                   struct where at, int width, int64_t rows)
@@ -136,8 +137,8 @@ static void add_grains(struct column_list *list, struct dem *dem)
     add_numbers(list, "displacement", OF(dem->place, struct place, displacement), 3, n);
     add_numbers(list, "radius", OF(dem->place, struct place, radius), 1, n)->least =
         SMALLEST;
-    add_numbers(list, "velocity", OF(dem->motion, struct motion, linear), 3, n);
-    add_numbers(list, "spin", OF(dem->motion, struct motion, angular), 3, n);
+    add_numbers(list, "velocity", RECORDS(dem->velocity, dem->motion_stride), 3, n);
+    add_numbers(list, "spin", RECORDS(dem->spin, dem->motion_stride), 3, n);
     add_numbers(list, "mass", WHOLE(dem->mass), 1, n)->least = SMALLEST;
     add_numbers(list, "weight", WHOLE(dem->weight), 1, n)->least = SMALLEST;
     if (dem->inertia_factor)

@@ -121,8 +121,8 @@ static void resist_rolling(const struct dem *dem, struct wall_pair *pair,
                            double normal_force, struct push *push)
 {
     const struct vector n = contact->normal;
-    const struct vector spin = subtract(dem->wall[pair->wall].spin,
-                                        as_vector(dem->motion[pair->particle].angular));
+    const struct vector spin =
+        subtract(dem->wall[pair->wall].spin, as_vector(spin_of(dem, pair->particle)));
     const bool hertz = dem->features & FEATURE_HERTZ;
     const double before = fmax(pair->depth, 0), now = contact->overlap;
     const struct wall_rolling step = {
@@ -143,11 +143,10 @@ static struct vector sliding_velocity(const struct dem *dem,
                                       const struct wall_geometry *contact)
 {
     const struct rigid_wall *wall = &dem->wall[pair->wall];
-    const struct motion *grain = &dem->motion[pair->particle];
-    const struct vector rolling =
-        scale(contact->arm, cross(as_vector(grain->angular), contact->normal));
+    const struct vector rolling = scale(
+        contact->arm, cross(as_vector(spin_of(dem, pair->particle)), contact->normal));
     return subtract(add(wall->velocity, cross(wall->spin, contact->lever)),
-                    add(as_vector(grain->linear), rolling));
+                    add(as_vector(velocity_of(dem, pair->particle)), rolling));
 }
 
 static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
@@ -170,7 +169,7 @@ static struct push push_wall(const struct dem *dem, struct wall_pair *pair,
         return push;
     }
     const struct vector spins =
-        add(as_vector(dem->motion[pair->particle].angular), dem->wall[pair->wall].spin);
+        add(as_vector(spin_of(dem, pair->particle)), dem->wall[pair->wall].spin);
     const double angle = 0.5 * dt * dot(spins, n);
     const double friction_normal_force =
         dem->friction_feels_dashpot ? fmax(spring + dashpot, 0) : spring;

@@ -24,7 +24,7 @@ static struct relative_position position_from_wall(const struct dem *dem, int i,
 {
     const struct rigid_wall *wall = &dem->wall[w];
     const struct vector u = as_vector(dem->place[i].displacement);
-    const struct vector v = as_vector(dem->motion[i].linear);
+    const struct vector v = as_vector(velocity_of(dem, i));
     struct relative_position s = {
         .start = subtract(dem->start[i], wall->is.point),
         .moved = subtract(subtract(u, wall->displacement),
