@@ -225,9 +225,9 @@ def liggghts_walls(scene):
 
 
 def liggghts_data(scene):
-    low, high = -0.05, 0.3
+    middle = (scene.positions.min(0) + scene.positions.max(0)) / 2  # where two processes share the grains
     text = f"grains\n\n{len(scene.positions)} atoms\n2 atom types\n\n"
-    text += "".join(f"{low} {high} {a}lo {a}hi\n" for a in "xyz") + "\nAtoms\n\n"
+    text += "".join(f"{x - 0.175} {x + 0.175} {a}lo {a}hi\n" for x, a in zip(middle, "xyz")) + "\nAtoms\n\n"
     text += "".join(f"{k} 1 {2 * RADIUS} {DENSITY} {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}\n"
                     for k, p in enumerate(scene.positions, 1))
     if scene.velocities.any():
@@ -248,7 +248,7 @@ def liggghts(scene):
     # Its bridges hold a twentieth of the liquid of both grains, given in per cent of their volumes.
     content = 100 * scene.liquid / (0.1 * MASS / DENSITY)
     names = {**COEFFICIENTS, "data": write("data", liggghts_data(scene)), "walls": write("walls", liggghts_walls(scene)),
-             "skin": scene.skin, "dt": STEP, "steps": scene.steps, "g": strength, "content": content,
+             "skin": scene.skin, "cores": scene.cores, "dt": STEP, "steps": scene.steps, "g": strength, "content": content,
              "tension": scene.tension, "gx": downwards[0], "gy": downwards[1], "gz": downwards[2],
              "cohesion": "easo/capillary/viscous" if scene.liquid else "off"}
     launch = ["mpirun", "--allow-run-as-root", "-np", f"{scene.cores}"] if scene.cores > 1 else []
