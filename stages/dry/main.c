@@ -205,9 +205,12 @@ static int estimate(const struct invocation *invocation,
     const struct drying_conditions *conditions = &parameters->conditions;
     struct body_size body = input_size(invocation, parameters->open_walls);
     body.changes = recorded_changes(&body, conditions->step_interval);
-    const struct cost cost =
+    struct cost cost =
         cost_of_drying(&body, parameters->liquid == LIQUID_VISCOUS, conditions->kelvin,
                        !(conditions->vapour_tolerance > 0));
+    if (parameters->rings != RINGS_NONE)
+        cost = with_rings(cost, &body, parameters->rings == RINGS_FILMS,
+                          film_step(parameters, body.throats));
     print_estimate(&cost, &body);
     return STATUS_OK;
 }

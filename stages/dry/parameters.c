@@ -214,6 +214,12 @@ static enum status complete_fluids(struct dry_parameters *parameters,
     return status;
 }
 
+double film_step(const struct dry_parameters *parameters, double throats)
+{
+    const double step = parameters->conditions.films.step;
+    return !isnan(step) ? step : throats > MAX_THROATS_BY_FLOWS ? FLOW_STEPS : 0;
+}
+
 // After the network is read, since the default of step_interval depends on its size.
 // Fluids come first: they alone can fail, and then nothing has been allocated. A list
 // at even intervals replaces `snapshots`; main has refused to have both.
@@ -239,8 +245,6 @@ enum status complete_conditions(struct dry_parameters *parameters,
     if (isnan(conditions->step_interval))
         conditions->step_interval =
             count_throats(network) > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
-    if (isnan(conditions->films.step))
-        conditions->films.step =
-            count_throats(network) > MAX_THROATS_BY_FLOWS ? FLOW_STEPS : 0;
+    conditions->films.step = film_step(parameters, count_throats(network));
     return STATUS_OK;
 }

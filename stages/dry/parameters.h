@@ -45,4 +45,7 @@ extern const struct parameter dry_table[];
 enum status complete_conditions(struct dry_parameters *parameters,
                                 const struct network *network, struct reason *reason);
 
+// films.step, or its default in a network of so many THROATS.
+double film_step(const struct dry_parameters *parameters, double throats);
+
 #endif

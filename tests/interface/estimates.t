@@ -60,6 +60,16 @@ for title, words_of in ("a lattice", {}), ("irregular grains", small):
         shape = forces["force"].shape
     ok((alone["grains"], alone["loads"]) == shape[:2][::-1], f"{title}: grains and loads are those that are made", f"{alone} {shape}")
 
+# The last network is that of the irregular grains.
+off = []
+for rings in "isolated", "films":
+    words = [*jammed[:2], *sets(f"rings={rings}"), at("merge-nodes.h5")]
+    said, (seconds, mebibytes) = estimate("dry", "--estimate", *words), measured("dry", *words, "-o", at("ringed.h5"))
+    low, high = said.get("range", [said["seconds"]] * 2)
+    if not (mebibytes / 2 < said["mebibytes"] < 2 * mebibytes and low / 6 < seconds < 6 * high):
+        off.append((rings, said, seconds, mebibytes))
+ok(not off, "and with rings and films", off)
+
 grown = [estimate("dry", f"--estimate={n}", *scene) for n in (1000, 10000, 100000)]
 ok(all(a["seconds"] < b["seconds"] and a["mebibytes"] < b["mebibytes"] for a, b in zip(grown, grown[1:])), "more grains take more", grown)
 status, said, error = call("dry", "--estimate", *scene)

@@ -8,6 +8,7 @@
 //     merging          a N
 //     drying           N (a + b m + d m^2) + e c       d m^2: products of links, of
 //                      floats with a tolerance; viscous: N^2
+//     rings            a N; films: b N^1.45 / step^0.45, at each event c N^2
 //     forces           a N + e c + f n L
 //     cycles           g n (ramp + L cycles)
 //     equilibria       a n^2 L
@@ -91,6 +92,18 @@ struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin
         5.5e-4 * throats +
         (14 * body->changes + front * front * (exact ? 4 : 2)) / MEBIBYTE;
     return kelvin ? within(seconds, 5, 100, mebibytes) : cost_of(seconds, mebibytes);
+}
+
+struct cost with_rings(struct cost drying, const struct body_size *body, bool films,
+                       double step)
+{
+    const double throats = body->throats, rings = 4e-5 * throats;
+    const double by_events = 2.8e-7 * throats * throats;
+    const double by_steps = 2.4e-6 * pow(throats, 1.45) * pow(0.01 / step, 0.45);
+    const double flow = !films ? 0 : step > 0 ? fmin(by_steps, by_events) : by_events;
+    return (struct cost){drying.seconds + rings + flow, drying.least + rings + flow / 3,
+                         drying.most + rings + 3 * flow,
+                         drying.mebibytes + (films ? 4.5e-4 : 1.5e-4) * throats};
 }
 
 // What the stages hold of forces over time: a band of rows.

@@ -51,6 +51,11 @@ struct cost cost_of_merging(const struct body_size *body);
 struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
                            bool exact);
 
+// What rings around contacts add to a drying, and with FILMS the flow in films, found
+// again when the saturation has fallen by STEP; 0: at each event.
+struct cost with_rings(struct cost drying, const struct body_size *body, bool films,
+                       double step);
+
 struct cost cost_of_forces(const struct body_size *body);
 
 // BODY->loads loads by CYCLES time steps each after RAMP; by up to MOST until they are
