@@ -105,13 +105,15 @@ def step_of(values):
 
 
 def range_of(measure, rows, summary):
-    """A range for gnuplot where the values have none; else ""."""
-    values = {p["measures"][measure.name]["mean"] for p in summary["points"]} | {r[measure.name] for r in rows} | \
-        {p["reference"].get(measure.name) for p in summary["points"]}
+    """A range for gnuplot where the values have none, or from 0 where they come near it and none, nor an
+    interval, is below; else ""."""
+    values = {p["measures"][measure.name][what] for p in summary["points"] for what in ("mean", "low", "high")} | \
+        {r[measure.name] for r in rows} | {p["reference"].get(measure.name) for p in summary["points"]}
     values = sorted(x for x in values if x is not None) or [0]
     margin = 0.1 * abs(values[-1]) or 1
-    flat = values[-1] - values[0] <= 1e-12 * abs(values[-1])
-    return f"[{values[-1] - margin:.9g}:{values[-1] + margin:.9g}]" if flat else ""
+    if values[-1] - values[0] <= 1e-12 * abs(values[-1]):
+        return f"[{values[-1] - margin if values[-1] else 0:.9g}:{values[-1] + margin:.9g}]"
+    return "[0:*]" if 0 <= values[0] < 0.2 * values[-1] else ""
 
 
 def draw_figure(rows, summary, study, folder):
