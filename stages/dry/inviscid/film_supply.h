@@ -17,8 +17,7 @@ struct film_supply {
     double scale;
     double evaporation; // scaled, of nodes without liquid in throats, that films bring
     int n_source;
-    int *
-        source; // (n_source) clusters from which films draw, by basin; -1: none is left
+    int *source; // (n_source) by basin, the cluster it draws from; -1: none is left
     struct film_basins *basins;
 
     bool *reached;              // (n_node) films reach it: its rings keep their liquid

@@ -3,7 +3,9 @@
 #include "geometry/triangulation/exact.h"
 
 #define CGAL_NDEBUG
-#define CGAL_HAS_NO_THREADS // looking up what each thread has of its own costs time
+// Looking up what each thread has of its own costs time. Threads may call these functions
+// all the same: exact numbers count their users without locks, but no call shares one.
+#define CGAL_HAS_NO_THREADS
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Exact_rational.h>
 #include <CGAL/Simple_cartesian.h>
