@@ -37,6 +37,7 @@ void dem_free(struct dem *dem)
                            dem->place,
                            dem->velocity, // and spins
                            dem->external,
+                           dem->pulled,
                            dem->applied,
                            dem->mobility,
                            dem->mass,
