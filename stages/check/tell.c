@@ -87,7 +87,7 @@ static double two_digits(const json_t *value)
 {
     char text[32];
     snprintf(text, sizeof text, "%.1e", json_number_value(value));
-    return atof(text);
+    return strtod(text, NULL);
 }
 
 // The cost of each stage by the number of grains (suggest.c).

@@ -238,22 +238,25 @@ static void precondition(void *context, const double *residual, double *z)
 static void correct(struct film_flow *flow, double reduction, const double *residual,
                     double *work)
 {
-    const int n = flow->matrix->n;
+    const size_t n = (size_t)flow->matrix->n;
     const struct film_factor *factor = flow->factor;
     if (!factor->approximate || find_sites(flow) > MOST_CHANGED) {
         make_factor(flow);
         find_sites(flow);
     }
     double *r = work, *x = work + n;
-    for (int i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++)
         r[i] = flow->held[i] ? 0 : residual[i];
-    const double size = sqrt(sum_of_products(r, r, n));
-    for (int i = 0; i < n; i++)
+    const double size = sqrt(sum_of_products(r, r, (int)n));
+    for (size_t i = 0; i < n; i++)
         r[i] /= size;
-    const struct linear_problem problem = {
-        n, flow, multiply, precondition, {work + 2 * n, work + 3 * n, work + 4 * n}};
+    const struct linear_problem problem = {(int)n,
+                                           flow,
+                                           multiply,
+                                           precondition,
+                                           {work + 2 * n, work + 3 * n, work + 4 * n}};
     flow->iterations += conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
-    for (int i = 0; i < n; i++)
+    for (size_t i = 0; i < n; i++)
         compensated_add(&flow->level[i], size * x[i]);
 }
 

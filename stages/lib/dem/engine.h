@@ -395,8 +395,8 @@ struct vector advance_wall_rolling(struct wall_pair *pair,
 // the setup, by index in the packing; NULL keeps those that are fixed. With
 // density_scaling every grain gets the mean inertia, but keeps its weight.
 void set_masses(struct dem *dem, const uint8_t *fixed);
-// Of a grain of its radius and density.
-double own_mass(const struct dem *dem, int particle);
+// Of grain I, of its radius and density.
+double own_mass(const struct dem *dem, int i);
 // Sets what external forces are found from, when what is applied, gravity or weights
 // have changed.
 void set_external(struct dem *dem);

@@ -52,8 +52,12 @@ enum status copy_text(const struct bytes *text, char **copy, struct reason *reas
     if (memchr(text->data, 0, text->size))
         return refuse(reason, STATUS_BAD_DATA,
                       "holds null bytes: neither text nor HDF5");
-    *copy = allocate(text->size + 1, 1);
-    memcpy(*copy, text->data, text->size);
+    static const char mark[] = "\xef\xbb\xbf"; // UTF-8, says Windows
+    const size_t marked = sizeof mark - 1;
+    const bool has_mark = text->size >= marked && !memcmp(text->data, mark, marked);
+    const size_t skipped = has_mark ? marked : 0;
+    *copy = allocate(text->size - skipped + 1, 1);
+    memcpy(*copy, (const char *)text->data + skipped, text->size - skipped);
     return STATUS_OK;
 }
 
@@ -82,8 +86,7 @@ enum status import_text(const struct bytes *text, struct packing *packing,
     enum status status = copy_text(text, &copy, reason);
     if (status) return status;
     int capacity = 0, number = 0;
-    char *rest =
-        copy + (strncmp(copy, "\xef\xbb\xbf", 3) ? 0 : 3); // UTF-8, says Windows
+    char *rest = copy;
     for (char *line; !status && (line = strsep(&rest, "\n"));) {
         double grain[4] = {0};
         const int count = read_numbers(line, grain);

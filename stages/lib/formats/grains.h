@@ -21,8 +21,8 @@ enum status import_text(const struct bytes *text, struct packing *packing,
 // Walls where the grains end.
 void box_around(struct packing *packing);
 
-// A copy that ends with a null, for the caller to free; STATUS_BAD_DATA when there are
-// nulls within.
+// A copy that ends with a null, without the mark of UTF-8, for the caller to free;
+// STATUS_BAD_DATA when there are nulls within.
 enum status copy_text(const struct bytes *text, char **copy, struct reason *reason);
 
 // Whether this is a LAMMPS dump in text.
