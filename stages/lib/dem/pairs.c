@@ -246,7 +246,7 @@ static void *take_block(struct dem *dem, size_t bytes, size_t *size)
     *size = dem->spare_size;
     dem->spare_block = NULL;
     dem->spare_size = 0;
-    if (*size >= bytes) return block;
+    if (block && *size >= bytes) return block;
     free(block);
     *size = bytes + bytes / 8; // lists of the next searches may be longer
     return allocate_uncleared(*size, 1);

@@ -163,8 +163,8 @@ static enum status make_room(struct dem *dem, const struct saved *saved)
     const int n_wall_pair = rows_of(saved, "wall_pair_particle", 1);
     const int n_crack = rows_of(saved, "crack_bond", 1);
     if (n_wall_pair < 0 || n_crack < 0) return STATUS_BAD_DATA;
-    dem->wall_pair =
-        reallocate(dem->wall_pair, (size_t)n_wall_pair + 1, sizeof *dem->wall_pair);
+    free(dem->wall_pair);
+    dem->wall_pair = allocate((size_t)n_wall_pair + 1, sizeof *dem->wall_pair);
     dem->n_wall_pair = n_wall_pair;
     dem->n_crack = n_crack;
     dem->crack_capacity = n_crack + 1;
@@ -261,6 +261,10 @@ static void derive(struct dem *dem)
             set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
     }
     set_wall_laws(dem);
+    for (int k = 0; k < dem->n_wall_pair; k++) {
+        struct wall_pair *pair = &dem->wall_pair[k];
+        pair->acts = pair->depth >= 0 || is_wall_bridged(dem, pair);
+    }
     list_walls_of_grains(dem);
     if (dem->liquid) count_bridges(dem);
     set_external(dem);
