@@ -50,9 +50,7 @@ static struct cost cost_of_step(const struct dem *dem)
     const struct cost grain =
         features & FEATURE_ROTATION ? turning_grain : smooth_grain;
     const double pairs = (double)dem->pairs.n_pair / dem->n_particle;
-    const double as_needed = (!dem->has_external ? 0
-                              : dem->external    ? 32
-                                                 : 8) +
+    const double as_needed = (dem->has_external ? 32 : 0) +
                              (dem->equal_mobility ? 0 : 16) +
                              (dem->n_wall_pair > 0 ? 4 : 0);
     return (struct cost){grain.flops + pairs * pair.flops,

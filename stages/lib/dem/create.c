@@ -168,7 +168,7 @@ static void new_grains(struct dem *dem, int n)
     dem->index = NEW_ARRAY(int32_t, n);
     dem->start = NEW_ARRAY(struct vector, n);
     dem->place = allocate_aligned(n_with_dummy, sizeof *dem->place);
-    dem->pulled = NEW_ARRAY(double, n);
+    dem->external = allocate_aligned((size_t)n, sizeof *dem->external);
     dem->mobility = allocate((size_t)n, sizeof *dem->mobility);
     dem->mass = NEW_ARRAY(double, n);
     dem->weight = NEW_ARRAY(double, n);

@@ -37,7 +37,6 @@ void dem_free(struct dem *dem)
                            dem->place,
                            dem->velocity, // and spins
                            dem->external,
-                           dem->pulled,
                            dem->applied,
                            dem->mobility,
                            dem->mass,

@@ -91,7 +91,7 @@ double booked_ahead(const struct dem *dem, int i)
         return 0.5 * step * group_power(dem, i, &load);
     }
     if (!(dem->mobility[i][0] > 0)) return 0;
-    return step * dot(external_force(dem, i), as_vector(velocity_of(dem, i)));
+    return step * dot(as_vector(dem->external[i]), as_vector(velocity_of(dem, i)));
 }
 
 static struct dem_energy ledger_totals(const struct dem *dem)

@@ -219,12 +219,9 @@ struct dem {
     // velocity_of and spin_of find those of a grain.
     double *velocity, *spin;
     size_t motion_stride;
-    // Forces from outside [external_force]: weights alone are found as they are needed,
-    // from a quarter of the bytes.
+    double (*external)[4];  // (n_particle) force, weight included
+    bool has_external;      // some external force is not 0
     struct vector *applied; // (n_particle) without weight; NULL: none
-    double (*external)[4];  // (n_particle) with weight; NULL: nothing is applied
-    double *pulled;         // (n_particle) mass that gravity pulls; 0 when driven
-    bool has_external;      // some of these forces is not 0
     struct vector gravity;
     double (*mobility)[2]; // (n_particle) 1/m, 1/I; 0 when fixed or driven
     bool equal_mobility;   // all mobilities are the same
@@ -397,11 +394,8 @@ struct vector advance_wall_rolling(struct wall_pair *pair,
 void set_masses(struct dem *dem, const uint8_t *fixed);
 // Of grain I, of its radius and density.
 double own_mass(const struct dem *dem, int i);
-// Sets what external forces are found from, when what is applied, gravity or weights
-// have changed.
+// Sets external forces from what is applied and gravity.
 void set_external(struct dem *dem);
-// The force from outside on a grain, weight included; 0 when driven [grains.c].
-struct vector external_force(const struct dem *dem, int particle);
 void set_equal_mobility(struct dem *dem); // sets equal_mobility
 
 // Liquid bridges [liquid.c]; all but the first two only in wet scenes. The longest gap,

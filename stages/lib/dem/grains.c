@@ -25,20 +25,6 @@ SIMD_INLINE double4 as_quad(struct vector a)
     return (double4){a.x, a.y, a.z, 0};
 }
 
-// Weights are added to 0, so that none is -0.
-SIMD_INLINE double4 external_of(const struct dem *dem, int particle)
-{
-    const double4 zero = {0};
-    return dem->external ? *(const double4 *)dem->external[particle]
-                         : zero + dem->pulled[particle] * as_quad(dem->gravity);
-}
-
-struct vector external_force(const struct dem *dem, int particle)
-{
-    const double4 force = external_of(dem, particle);
-    return (struct vector){force[0], force[1], force[2]};
-}
-
 // Adds walls, then the external force, to SUM.
 SIMD_INLINE struct load with_walls(const struct dem *dem, int particle, struct load sum,
                                    bool turns)
@@ -50,7 +36,7 @@ SIMD_INLINE struct load with_walls(const struct dem *dem, int particle, struct l
         sum.force += as_quad(pair->load);
         if (turns) sum.moment += as_quad(pair->moment);
     }
-    if (dem->has_external) sum.force += external_of(dem, particle);
+    if (dem->has_external) sum.force += *(const double4 *)dem->external[particle];
     return sum;
 }
 
@@ -136,7 +122,7 @@ SIMD_INLINE double surface_square(double4 velocity, double4 spin, double radius,
 static void update_grain_ledger(const struct dem *dem, int i, const struct load *sum,
                                 struct load damped_sum, double4 velocity, double4 spin)
 {
-    const double4 external = external_of(dem, i);
+    const double4 external = *(const double4 *)dem->external[i];
     const double4 taken = (sum->force - damped_sum.force) * velocity +
                           (sum->moment - damped_sum.moment) * spin;
     dem->grain_ledger[i][0] += dem->time_step * sum_of(external * velocity);

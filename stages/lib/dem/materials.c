@@ -10,8 +10,6 @@
 // Linear [K 4.22, 4.27-4.30], timed [G 2], Hertz-Mindlin [K 4.23] with Tsuji's damping.
 #include "dem/engine.h"
 
-#include "basics/memory.h"
-
 #include <math.h>
 
 // Two partners: materials, effective mass m_ij and radius R_i R_j / (R_i + R_j).
@@ -201,19 +199,13 @@ void set_masses(struct dem *dem, const uint8_t *fixed)
 
 void set_external(struct dem *dem)
 {
-    const size_t n = (size_t)dem->n_particle;
-    if (dem->applied && !dem->external)
-        dem->external = allocate_aligned(n, sizeof *dem->external);
     dem->has_external = false;
-    for (int i = 0; i < dem->n_particle; i++) {
-        dem->pulled[i] = is_driven(dem, i) ? 0 : dem->weight[i];
+    for (int i = 0; i < dem->n_particle; i++)
         for (int axis = 0; axis < 3; axis++) {
-            const double weight = dem->pulled[i] * component(dem->gravity, axis);
-            const double applied = dem->applied && !is_driven(dem, i)
-                                       ? component(dem->applied[i], axis)
-                                       : 0;
-            if (dem->external) dem->external[i][axis] = applied + weight;
-            if (applied + weight != 0) dem->has_external = true;
+            const double external =
+                (dem->applied ? component(dem->applied[i], axis) : 0) +
+                dem->weight[i] * component(dem->gravity, axis);
+            dem->external[i][axis] = is_driven(dem, i) ? 0 : external;
+            if (dem->external[i][axis] != 0) dem->has_external = true;
         }
-    }
 }

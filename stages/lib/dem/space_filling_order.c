@@ -102,7 +102,6 @@ static void reorder_grains(struct dem *dem, const struct keyed *order)
             dem->n_particle); // and spins, if they lie between
     if (dem->motion_stride == 4) reorder(dem->spin, each, order, dem->n_particle);
     REORDER(dem->external);
-    REORDER(dem->pulled);
     REORDER(dem->applied);
     REORDER(dem->mobility);
     REORDER(dem->mass);
