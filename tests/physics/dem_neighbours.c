@@ -103,11 +103,11 @@ static void test_another_search_changes_nothing(void **state)
         run(often, 7);
         run(rare, 7);
     }
-    for (int i = 0; i < N; i++)
-        for (int axis = 0; axis < 3; axis++) {
-            assert_true(velocity_of(rare, i)[axis] == velocity_of(often, i)[axis]);
-            assert_true(spin_of(rare, i)[axis] == spin_of(often, i)[axis]);
-        }
+    for (int i = 0; i < N; i++) {
+        assert_memory_equal(velocity_of(rare, i), velocity_of(often, i),
+                            4 * sizeof(double));
+        assert_memory_equal(spin_of(rare, i), spin_of(often, i), 4 * sizeof(double));
+    }
     dem_free(rare);
     dem_free(often);
     packing_free(&packing);

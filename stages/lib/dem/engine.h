@@ -107,7 +107,6 @@ struct liquid {
 // (find_wall_pairs), and keeps its history over searches.
 struct wall_pair {
     int32_t particle, wall;
-    bool acts;                  // on the wall, in the last cycle
     double depth;               // overlap at the last force
     struct vector load, moment; // on the grain, at the last force
     struct contact_law law;
@@ -607,6 +606,12 @@ static inline bool walls_are_wet(const struct dem *dem)
 static inline bool is_wall_bridged(const struct dem *dem, const struct wall_pair *pair)
 {
     return walls_are_wet(dem) && pair->bridge_volume > 0;
+}
+
+// Whether the wall felt the grain at the last force.
+static inline bool acts_on_wall(const struct dem *dem, const struct wall_pair *pair)
+{
+    return pair->depth >= 0 || is_wall_bridged(dem, pair);
 }
 
 // Geometry of pair P when its grains are at BACK time steps before now.

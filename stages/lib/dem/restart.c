@@ -261,10 +261,6 @@ static void derive(struct dem *dem)
             set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
     }
     set_wall_laws(dem);
-    for (int k = 0; k < dem->n_wall_pair; k++) {
-        struct wall_pair *pair = &dem->wall_pair[k];
-        pair->acts = pair->depth >= 0 || is_wall_bridged(dem, pair);
-    }
     list_walls_of_grains(dem);
     if (dem->liquid) count_bridges(dem);
     set_external(dem);

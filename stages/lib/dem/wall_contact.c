@@ -210,16 +210,14 @@ static void touch_wall(struct dem *dem, struct wall_pair *pair)
     const struct wall_geometry contact =
         wall_geometry(dem, pair->particle, pair->wall, 0);
     const bool touches = contact.overlap >= 0, wet = walls_are_wet(dem);
-    const bool was_apart = !pair->acts && !(pair->depth > 0);
-    if (!touches && was_apart && !wet && !dem->balance_energy) { // nothing else changes
-        pair->depth = contact.overlap;
+    if (!touches && !acts_on_wall(dem, pair) && !wet && !dem->balance_energy) {
+        pair->depth = contact.overlap; // nothing else changes
         return;
     }
     pair->resistance = pair->dashpots = pair->slip = pair->bridge_work = 0;
     if (wet) update_wall_bridge(dem, pair, contact.overlap);
     if (!touches) leave_wall(dem, pair, contact.overlap);
-    pair->acts = touches || is_wall_bridged(dem, pair);
-    if (!pair->acts) return;
+    if (!touches && !is_wall_bridged(dem, pair)) return;
 
     const struct vector v = sliding_velocity(dem, pair, &contact);
     struct push push = {.dashpots = 0};

@@ -175,7 +175,7 @@ void begin_walls(struct dem *dem)
 static void add_up_pair(struct dem *dem, const struct wall_pair *pair)
 {
     struct rigid_wall *wall = &dem->wall[pair->wall];
-    if (pair->acts) {
+    if (acts_on_wall(dem, pair)) {
         wall->force = subtract(wall->force, pair->load);
         wall->moment = add(wall->moment, pair->wall_moment);
         wall->resistance += pair->resistance;
