@@ -3,8 +3,8 @@
 //     source A - node - node - node - source B,
 // each link conducts 1, the nodes evaporate 1/4, 15/8 and 1/2. By hand their levels are
 // 1/2, 1/4, 15/8: A brings 1/2, B 17/8, and the middle node gets 1/4 from one side and
-// 13/8 from the other. A cluster that floats hangs on each of the outer nodes, and has
-// their levels.
+// 13/8 from the other. Each outer node has a floating cluster beside it, with the level
+// of the node.
 #include "../test.h"
 
 #include "dry/inviscid/film_basins.h"
