@@ -15,6 +15,7 @@ from plan import Artifact
 
 MOST_ASKED = 20  # artifacts of a kind that are asked for; others are taken for like them
 INSTANT = {"check", "crackstats"}  # that take no longer than a program takes to start
+RESULT_BYTES = 2.5e4  # which these write
 
 
 def times(folder):
@@ -77,9 +78,34 @@ def foreseen(artifact):
     return asked(artifact.stage(), artifact.scene, artifact.sets, sizes, () if made else artifact.inputs)
 
 
+def some_of(paths):
+    return paths[::math.ceil(len(paths) / MOST_ASKED)]
+
+
+def foreseen_bytes(artifact):
+    """What ARTIFACT takes on disk; None: its stage does not say."""
+    if artifact.stage() in INSTANT:
+        return RESULT_BYTES
+    said = foreseen(artifact)
+    return said["disk_mebibytes"] * 2**20 if said else None
+
+
+def bytes_of(plan, stale, large):
+    """Of all STALE artifacts: of a kind in LARGE as there, of others as foreseen; None: not known."""
+    of_kind, total = {}, 0
+    for path in stale:
+        of_kind.setdefault(plan.artifacts[path].kind, []).append(path)
+    for kind, paths in of_kind.items():
+        each = [large[kind]] if kind in large else [foreseen_bytes(plan.artifacts[path]) for path in some_of(paths)]
+        if None in each:
+            return None
+        total += len(paths) * sum(each) / len(each)
+    return total
+
+
 def foresee(plan, paths):
     """Mean seconds, least and most, MiB of the PATHS, of which some are asked; and stages that do not say."""
-    some = paths[::math.ceil(len(paths) / MOST_ASKED)]
+    some = some_of(paths)
     parts = [(part, foreseen(part)) for path in some for part in plan.parts[path]]
     said = [each for _, each in parts if each]
     seconds = [sum(each["seconds"] for each in said), *(sum(each.get("range", [each["seconds"]] * 2)[k] for each in said) for k in (0, 1))]
@@ -116,8 +142,7 @@ def estimate(plan, stale, folder):
             total.silent |= silent
         total.seconds, total.least, total.most = (sum_ + len(paths) * x for sum_, x in
                                                   zip((total.seconds, total.least, total.most), each))
-    kinds = [plan.artifacts[path].kind for path in stale]
-    total.bytes = sum(large[kind] for kind in kinds) if all(kind in large for kind in kinds) else None
+    total.bytes = bytes_of(plan, stale, large)
     return total
 
 

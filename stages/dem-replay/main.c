@@ -45,7 +45,7 @@ static const struct stage stage = {
     .writes = "response",
     .most_inputs = 2,
     .parameters = replay_table,
-    .estimates = true,
+    .estimates = ESTIMATES_SIZES,
     .notes =
         "A second input is the response of an earlier replay with keep_state, from "
         "which this one continues: with the positions of its grains and the bonds that "
@@ -431,6 +431,7 @@ static int estimate(const struct invocation *invocation,
 {
     struct replay_settings *settings = &parameters->settings;
     struct body_size body = input_size(invocation, 0);
+    body.snapshots = settings->n_snapshot;
     const struct capillarity *drains = &settings->capillarity;
     if (drains->suction > 0)
         body.loads = (double)drains->steps;

@@ -35,7 +35,7 @@ static const struct stage stage = {
     .writes = "drying",
     .most_inputs = 1,
     .parameters = dry_table,
-    .estimates = true,
+    .estimates = ESTIMATES_SIZES,
     .checkpoints = true};
 
 // Saturation falls during the drying, so a rising list could not be met in its order.

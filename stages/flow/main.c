@@ -126,7 +126,7 @@ static const struct stage stage = {
     .writes = "flow",
     .most_inputs = 1,
     .parameters = table,
-    .estimates = true,
+    .estimates = ESTIMATES_SIZES,
     .notes = "Pores are the cells of the regular triangulation of the grains, throats "
              "its facets. With write=forces the output is a forces artifact."};
 

@@ -123,7 +123,7 @@ static const struct stage stage = {
     .writes = "forces",
     .most_inputs = 1,
     .parameters = table,
-    .estimates = true};
+    .estimates = ESTIMATES_SIZES};
 
 // Takes from the drying each property of the liquid that was not given. DIFFERENCE says
 // which given ones are not those of the drying. Only the tension has no default: an

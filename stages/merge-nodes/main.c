@@ -58,7 +58,7 @@ static const struct stage stage = {
     .writes = "network",
     .most_inputs = 1,
     .parameters = table,
-    .estimates = true,
+    .estimates = ESTIMATES_SIZES,
     .reports = "coordination, lengths and radii before and after, as JSON"};
 
 // Cylinders become volumes, m3: then merging passes them on, and their sum stays.

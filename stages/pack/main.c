@@ -38,7 +38,7 @@ static const struct stage stage = {
     .writes = "packing",
     .most_inputs = 1,
     .parameters = pack_table,
-    .estimates = true,
+    .estimates = ESTIMATES_SIZES,
     .notes =
         "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
         "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "

@@ -9,6 +9,8 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "control.h"
+#include "foresee.h"
+#include "parameters/estimate.h"
 #include "run.h"
 #include "write_motion.h"
 
@@ -26,6 +28,7 @@ static const struct stage stage = {
     .writes = "motion",
     .most_inputs = 2,
     .parameters = simulate_table,
+    .estimates = ESTIMATES_INPUT,
     .notes =
         "A second input is a forces artifact of the same grains (forces.row). With "
         "write=packing the output is a packing.",
@@ -198,6 +201,16 @@ static void run(const struct simulate_parameters *parameters, struct scene *scen
             reason.text);
 }
 
+static void estimate(const struct simulate_parameters *parameters, struct scene *scene)
+{
+    struct cost cost;
+    struct reason reason;
+    const enum status status = foresee_run(parameters, scene, &cost, &reason);
+    if (status) die(status, "%s", reason.text);
+    print_estimate(&cost,
+                   &(struct body_size){.grains = scene->setup.packing->n_particle});
+}
+
 // Without bond.kind the bonds of the packing are dropped here, so that nothing behind
 // this line sees them.
 int main(int argc, char **argv)
@@ -212,6 +225,10 @@ int main(int argc, char **argv)
     if (parameters.bond_kind == BOND_NONE) packing.n_bond = 0;
     struct scene scene;
     read_scene(&parameters, &packing, input, &scene);
+    if (invocation.estimates) {
+        estimate(&parameters, &scene);
+        return STATUS_OK;
+    }
 
     struct checkpoint checkpoint;
     checkpoint_begin(&checkpoint, &invocation, inputs);

@@ -249,6 +249,11 @@ static double interval(double given, double duration, double count)
     return duration > 0 ? duration / count : 1;
 }
 
+double snapshot_interval(const struct simulate_parameters *parameters)
+{
+    return interval(parameters->snapshots_every, parameters->duration, 20);
+}
+
 // m/s, of wall W with the largest of its factors, servo included.
 static double largest_speed(const struct scene *scene, int w)
 {
@@ -355,14 +360,14 @@ enum status run_scene(const struct simulate_parameters *parameters, struct scene
 {
     const double duration = parameters->duration;
     *outcome = (struct outcome){.record = record_init(parameters, scene)};
-    struct run run = {
-        .parameters = parameters,
-        .scene = scene,
-        .outcome = outcome,
-        .controlled = is_controlled(parameters, scene),
-        .record_every = interval(parameters->record_every, duration, 200),
-        .snapshots_every = interval(parameters->snapshots_every, duration, 20),
-        .asked = cycles_between_questions(scene->setup.packing->n_particle)};
+    struct run run = {.parameters = parameters,
+                      .scene = scene,
+                      .outcome = outcome,
+                      .controlled = is_controlled(parameters, scene),
+                      .record_every = interval(parameters->record_every, duration, 200),
+                      .snapshots_every = snapshot_interval(parameters),
+                      .asked =
+                          cycles_between_questions(scene->setup.packing->n_particle)};
     enum status status = begin(&run, force, threads, keeper, reason);
     if (status) return status;
     record_what_is_due(&run);

@@ -20,6 +20,9 @@ struct outcome {
 };
 void outcome_free(struct outcome *outcome);
 
+// s between two snapshots.
+double snapshot_interval(const struct simulate_parameters *parameters);
+
 // Runs SCENE. FORCE (n_particle) N acts besides; may be NULL. TELL gets the fraction of
 // the duration that is done. KEEPER may be NULL. The caller frees *OUTCOME with
 // outcome_free, also on failure. STATUS_NOT_CONVERGED: past the stability limit,

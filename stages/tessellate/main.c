@@ -89,7 +89,7 @@ static const struct stage stage = {
     .writes = "network",
     .most_inputs = 1,
     .parameters = table,
-    .estimates = true};
+    .estimates = ESTIMATES_SIZES};
 
 // Gives volumes in m3 that sum to the void. In a Voronoi diagram larger grains stick
 // out into the void of their neighbours' cells.

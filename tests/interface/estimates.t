@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """--estimate: the sizes are those of the artifacts that are then made, memory is what `time` measures, seconds
-are those of the processor (widely: other programs run), and a study plans by them."""
+are those of the processor (widely: other programs run), disk is that of the files, and a study plans by them."""
 import json
 import os
 import re
@@ -40,6 +40,11 @@ def measured(stage, *words):
         return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, float(file.read()) / 1024
 
 
+def on_disk(said, name):
+    """MiB foreseen over those of the file."""
+    return said["disk_mebibytes"] * 2**20 / os.path.getsize(at(name))
+
+
 def is_near(said, seconds, mebibytes):
     """Memory within a factor of two, seconds of a busy machine within six."""
     low, high = said.get("range", [said["seconds"]] * 2)
@@ -51,7 +56,7 @@ jammed = ["-p", os.path.abspath("samples/irregular-50000.json"), *sets("count=40
 small = {"pack": jammed, "force-protocol": [*jammed[:2], *sets("steps=20")],
          "dem-replay": [*jammed[:2], *sets("cycles=100", "time_step_safety=null", "loose_grains=unload")]}
 for title, words_of in ("a lattice", {}), ("irregular grains", small):
-    source, sizes, off = [], "", []
+    source, sizes, off, disk = [], "", [], []
     for stage in CHAIN:
         words = words_of.get(stage, scene if not words_of else jammed[:2])
         here, alone = estimate(stage, "--estimate", *words, *source), estimate(stage, f"--estimate={sizes}" if sizes else "--estimate", *words)
@@ -60,7 +65,10 @@ for title, words_of in ("a lattice", {}), ("irregular grains", small):
         for said in here, alone:
             if not is_near(said, seconds, mebibytes):
                 off.append((stage, said, seconds, mebibytes))
+            disk.append(on_disk(said, f"{stage}.h5"))
     ok(not off, f"{title}: memory within a factor of two, seconds of a busy machine within six", off)
+    # A lattice has fewer throats than its number of grains lets expect.
+    ok(words_of == {} or 0.5 < min(disk) and max(disk) < 2, f"{title}: disk within a factor of two", disk)
     with h5py.File(at("force-protocol.h5")) as forces:
         shape = forces["force"].shape
     ok((alone["grains"], alone["loads"]) == shape[:2][::-1], f"{title}: grains and loads are those that are made", f"{alone} {shape}")
@@ -105,6 +113,20 @@ ok(len(rows) == len(cost) and not any("e" in number for row in rows for number i
 ok([bool(row[2]) for row in rows] == ["range" in row for row in cost.values()] and "range" in cost["dem-replay (100 equilibria)"],
    "with the range of what is only known roughly", told)
 
+# ---- a scene of discrete elements: the time step is that of its grains ---------------------------------
+
+slump = ["-p", os.path.abspath("samples/slump.json")]
+call("pack", *slump, *sets("count=500"), "-o", at("loose.h5"))
+for title, more in ("beads", []), ("moist beads", sets("bridges.volume=2e-12")), ("one time step", sets("time_step=2e-6")):
+    words = [*slump, *sets("duration=0.1", "record.snapshots_every=0.005"), *more, at("loose.h5")]
+    said, (seconds, mebibytes) = estimate("simulate", "--estimate", *words), measured("simulate", *words, "-o", at("motion.h5"))
+    ok(is_near(said, seconds, mebibytes) and 0.5 < on_disk(said, "motion.h5") < 2 and said["grains"] == 500
+       and ("range" in said) == (title != "one time step"), f"{title} that move: as near", f"{said} {seconds} {mebibytes}")
+status, said, error = call("simulate", "--estimate", *slump)
+ok(status == 64 and said == "" and "name an input" in error, "without grains there is no time step: 64", error)
+status, said, error = call("simulate", "--estimate", *slump, *sets("box.walls=-x"), at("loose.h5"))
+ok(status == 65 and said == "" and error.count("\n") == 1, "what a run refuses, its estimate refuses", error)
+
 # ---- a study that has no run yet --------------------------------------------------------------------
 
 with open(at("study.json"), "w", encoding="utf-8") as file:
@@ -113,7 +135,7 @@ environment = {**os.environ, "BIN": BIN, "MAKEFLAGS": ""}
 study = lambda what: subprocess.run([os.path.abspath("pipelines/study/study"), what, at("study.json"), f"--runs={at('runs')}"],
                                     capture_output=True, text=True, env=environment, timeout=120)
 said = study("plan").stdout
-ok("40 runs" in said and "of one core, as stages foresee it and disk: not known" in said, "plan says what stages foresee", said)
+ok("40 runs" in said and re.search(r"of one core, as stages foresee it and [\d.]+ MB of disk", said), "plan says what stages foresee", said)
 said = study("batch")
 with open(at("runs/study/study.sbatch"), encoding="utf-8") as file:
     script = file.read()

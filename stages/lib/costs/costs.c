@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // For n grains, N throats, m nodes of the open side, c rows of recorded changes, L
-// loads, seconds and MiB beyond what starting a program takes:
+// loads, S snapshots, seconds and MiB beyond what starting a program takes:
 //
 //     placing          a n
 //     moving           a n^(4/3)      cycles grow with the height, n^(1/3)
@@ -13,6 +13,13 @@
 //     cycles           g n (ramp + L cycles)
 //     equilibria       a n^2 L
 //     flow             a n, and as much for each system but the first
+//     motion           g n steps, where g grows as grains leave the caches
+//
+// and on disk, beside some 22 kB of attributes and small datasets (network: with the
+// open sections of throats; forces are packed, the more the more times there are):
+//
+//     packing a n,   network a N,   drying a N + 12 c,   forces a n + b n L,
+//     response and motion a n + b n S + c L
 //
 // with the constants below: `make bench-estimates` measures what they foresee. They are
 // of an AMD EPYC with AVX2, one core, with other programs beside; the growth of the
@@ -25,13 +32,26 @@
 static const double START_SECONDS = 0.05, START_MEBIBYTES = 10.5;
 static const double MEBIBYTE = 1048576;
 
+// Bytes of an artifact.
+static const double SMALL_BYTES = 22000, GRAIN_BYTES = 54, THROAT_BYTES = 107;
+
 // Events are recorded one by one up to so many throats, above in a thousand steps.
 static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
 
 static struct cost cost_of(double seconds, double mebibytes)
 {
     const double all = START_SECONDS + seconds;
-    return (struct cost){all, all, all, START_MEBIBYTES + mebibytes};
+    return (struct cost){.seconds = all,
+                         .least = all,
+                         .most = all,
+                         .mebibytes = START_MEBIBYTES + mebibytes};
+}
+
+// The cost of an artifact of so many BYTES.
+static struct cost writes(struct cost cost, double bytes)
+{
+    cost.disk = (SMALL_BYTES + bytes) / MEBIBYTE;
+    return cost;
 }
 
 // Known to a factor of LESS below and MORE above.
@@ -65,19 +85,24 @@ struct cost cost_of_packing(double grains, enum moving moving)
                                       [MOVING_BY_COMPRESSION] = 5.5e-5,
                                       [MOVING_BY_OVERLAPS] = 1.2e-4,
                                       [MOVING_BY_RELAXATION] = 3.5e-5};
-    if (moving == MOVING_NOT) return cost_of(1e-5 * grains, 5e-5 * grains);
-    return within(constant[moving] * pow(grains, 4.0 / 3), 3, 3,
-                  (moving == MOVING_BY_RELAXATION ? 1e-4 : 0.0025) * grains);
+    const struct cost cost =
+        moving == MOVING_NOT
+            ? cost_of(1e-5 * grains, 5e-5 * grains)
+            : within(constant[moving] * pow(grains, 4.0 / 3), 3, 3,
+                     (moving == MOVING_BY_RELAXATION ? 1e-4 : 0.0025) * grains);
+    return writes(cost, GRAIN_BYTES * grains);
 }
 
 struct cost cost_of_tessellation(double grains)
 {
-    return cost_of(8.5e-5 * grains, 0.0025 * grains);
+    return writes(cost_of(8.5e-5 * grains, 0.0025 * grains),
+                  THROAT_BYTES * body_of_grains(grains).unmerged);
 }
 
 struct cost cost_of_merging(const struct body_size *body)
 {
-    return cost_of(3e-6 * body->unmerged, 4e-4 * body->unmerged);
+    return writes(cost_of(3e-6 * body->unmerged, 4e-4 * body->unmerged),
+                  THROAT_BYTES * body->throats);
 }
 
 struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
@@ -91,7 +116,9 @@ struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin
     const double mebibytes =
         5.5e-4 * throats +
         (14 * body->changes + front * front * (exact ? 4 : 2)) / MEBIBYTE;
-    return kelvin ? within(seconds, 5, 100, mebibytes) : cost_of(seconds, mebibytes);
+    return writes(kelvin ? within(seconds, 5, 100, mebibytes)
+                         : cost_of(seconds, mebibytes),
+                  THROAT_BYTES * throats + 12 * body->changes);
 }
 
 struct cost with_rings(struct cost drying, const struct body_size *body, bool films,
@@ -101,9 +128,12 @@ struct cost with_rings(struct cost drying, const struct body_size *body, bool fi
     const double by_events = 2.8e-7 * throats * throats;
     const double by_steps = 2.4e-6 * pow(throats, 1.45) * pow(0.01 / step, 0.45);
     const double flow = !films ? 0 : step > 0 ? fmin(by_steps, by_events) : by_events;
-    return (struct cost){drying.seconds + rings + flow, drying.least + rings + flow / 3,
-                         drying.most + rings + 3 * flow,
-                         drying.mebibytes + (films ? 4.5e-4 : 1.5e-4) * throats};
+    return (struct cost){.seconds = drying.seconds + rings + flow,
+                         .least = drying.least + rings + flow / 3,
+                         .most = drying.most + rings + 3 * flow,
+                         .mebibytes =
+                             drying.mebibytes + (films ? 4.5e-4 : 1.5e-4) * throats,
+                         .disk = drying.disk};
 }
 
 // What the stages hold of forces over time: a band of rows.
@@ -111,6 +141,14 @@ static double band_bytes(const struct body_size *body)
 {
     static const double rows = 32;
     return 24 * body->grains * fmin(body->loads, rows);
+}
+
+// Packed from a MiB on (artifacts/write.c).
+static double force_bytes(const struct body_size *body)
+{
+    const double forces = body->grains * body->loads;
+    return 24 * forces < MEBIBYTE ? 24 * forces
+                                  : fmin(24, 3 + 60 / body->loads) * forces;
 }
 
 // Most memory is taken where the pulls are balanced, where the drying is read, each
@@ -123,8 +161,15 @@ struct cost cost_of_forces(const struct body_size *body)
     const double reading = 1.4e-4 * body->throats + 20 * body->changes / MEBIBYTE;
     const double sum =
         2.2e-4 * body->throats + (12 * body->changes + band_bytes(body)) / MEBIBYTE;
-    return cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
-                   packing + fmax(balance, fmax(reading, sum)));
+    return writes(cost_of(1.4e-5 * body->throats + 1e-7 * body->changes + 6e-7 * forces,
+                          packing + fmax(balance, fmax(reading, sum))),
+                  GRAIN_BYTES * body->grains + force_bytes(body));
+}
+
+// A snapshot has displacements, forces and, of 1.6 contacts a grain, the forces there.
+static double response_bytes(const struct body_size *body)
+{
+    return (80 + 90 * body->snapshots) * body->grains + 80 * body->loads;
 }
 
 // A band of long rows is made lower.
@@ -139,10 +184,12 @@ struct cost cost_of_cycles(const struct body_size *body, double ramp, double cyc
 {
     const double step = 5e-8 * body->grains, mebibytes = replay_mebibytes(body);
     const double least = step * (ramp + body->loads * cycles);
-    if (!(most > cycles)) return cost_of(least, mebibytes);
+    const double bytes = response_bytes(body);
+    if (!(most > cycles)) return writes(cost_of(least, mebibytes), bytes);
     const double middle = step * (ramp + body->loads * sqrt(cycles * most));
-    return within(middle, middle / least, step * (ramp + body->loads * most) / middle,
-                  mebibytes);
+    return writes(within(middle, middle / least,
+                         step * (ramp + body->loads * most) / middle, mebibytes),
+                  bytes);
 }
 
 // Menisci and pores take as long as contacts, or three times where these are few.
@@ -151,19 +198,38 @@ struct cost cost_of_drainage(const struct body_size *body, double ramp, double l
 {
     struct cost cost = cost_of_cycles(body, ramp, least, least + rest);
     const double steps = 2 * (cost.seconds - START_SECONDS);
-    return within(steps, steps / (cost.least - START_SECONDS),
-                  2 * 2 * (cost.most - START_SECONDS) / steps,
-                  cost.mebibytes - START_MEBIBYTES);
+    return writes(within(steps, steps / (cost.least - START_SECONDS),
+                         2 * 2 * (cost.most - START_SECONDS) / steps,
+                         cost.mebibytes - START_MEBIBYTES),
+                  response_bytes(body));
 }
 
 struct cost cost_of_equilibria(const struct body_size *body, bool friction)
 {
     const double work = body->grains * body->grains * body->loads;
-    return within((friction ? 3e-6 : 1e-7) * work, 30, 5,
-                  replay_mebibytes(body) + 0.1 * body->grains);
+    return writes(within((friction ? 3e-6 : 1e-7) * work, 30, 5,
+                         replay_mebibytes(body) + 0.1 * body->grains),
+                  response_bytes(body));
 }
 
 struct cost cost_of_flow(double grains, int systems)
 {
-    return cost_of(5e-5 * grains * (0.7 + 0.3 * systems), 0.0045 * grains);
+    return writes(cost_of(5e-5 * grains * (0.7 + 0.3 * systems), 0.0045 * grains),
+                  THROAT_BYTES * body_of_grains(grains).unmerged);
+}
+
+// From some 10^5 grains on the second grain of a pair is seldom in the caches.
+struct cost cost_of_motion(const struct motion_size *motion)
+{
+    static const double cached = 2e5, sums = 200, engine = 3; // MiB
+    const double n = motion->grains;
+    const double far = 1 + 2 * n / (n + cached);
+    const double grain_step =
+        far * ((motion->turns ? 7e-8 : 4.2e-8) + (motion->wet ? 4.2e-8 : 0));
+    const double snapshots =
+        motion->snapshots * (72 * n + (motion->wet ? 84 : 68) * motion->contacts);
+    return writes(
+        cost_of(grain_step * n * motion->steps,
+                engine + (motion->wet ? 0.002 : 0.0015) * n + snapshots / MEBIBYTE),
+        (GRAIN_BYTES + 20) * n + snapshots + sums * 300);
 }

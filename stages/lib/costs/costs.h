@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a stage takes: seconds of one core and MiB, foreseen from the sizes of what it
-// works on and from constants that were measured on one machine (costs.c). Pure
+// What a stage takes: seconds of one core, memory and disk, foreseen from the sizes of
+// what it works on and from constants that were measured on one machine (costs.c). Pure
 // functions.
 #ifndef CRAQUELURE_COSTS_H
 #define CRAQUELURE_COSTS_H
@@ -11,11 +11,12 @@
 // from the number of grains (body_of_grains); an artifact knows better.
 struct body_size {
     double grains;
-    double unmerged; // throats of the diagram
-    double throats;  // of the merged network
-    double face;     // nodes of the open side, which the front grows with
-    double changes;  // rows of /changes of the drying
-    double loads;    // rows of the forces
+    double unmerged;  // throats of the diagram
+    double throats;   // of the merged network
+    double face;      // nodes of the open side, which the front grows with
+    double changes;   // rows of /changes of the drying
+    double loads;     // rows of the forces
+    double snapshots; // of the replay
 };
 
 // SECONDS is to be expected. LEAST and MOST differ from it where the number of time
@@ -23,9 +24,10 @@ struct body_size {
 struct cost {
     double seconds, least, most; // of one core, user and system
     double mebibytes;            // at most at once
+    double disk;                 // MiB of the artifact it writes
 };
 
-// CHANGES and LOADS stay 0.
+// CHANGES, LOADS and SNAPSHOTS stay 0.
 struct body_size body_of_grains(double grains);
 
 // Rows of /changes that a drying records: each step has the throats that lose liquid. A
@@ -70,5 +72,13 @@ struct cost cost_of_equilibria(const struct body_size *body, bool friction);
 
 // SYSTEMS of pressures solved, one for each flow.
 struct cost cost_of_flow(double grains, int systems);
+
+// Discrete elements of any scene.
+struct motion_size {
+    double grains, steps;
+    double snapshots, contacts; // recorded in a snapshot; 0: none
+    bool turns, wet;            // friction, bonds or rolling; liquid bridges
+};
+struct cost cost_of_motion(const struct motion_size *motion);
 
 #endif

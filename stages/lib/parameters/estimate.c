@@ -14,9 +14,10 @@ json_t *rough(double value)
 
 void print_estimate(const struct cost *cost, const struct body_size *body)
 {
-    json_t *line = json_pack("{s:o,s:o,s:i,s:o}", "seconds", rough(cost->seconds),
-                             "mebibytes", rough(cost->mebibytes), "threads", 1,
-                             "grains", json_integer(llround(body->grains)));
+    json_t *line =
+        json_pack("{s:o,s:o,s:o,s:i,s:o}", "seconds", rough(cost->seconds), "mebibytes",
+                  rough(cost->mebibytes), "disk_mebibytes", rough(cost->disk),
+                  "threads", 1, "grains", json_integer(llround(body->grains)));
     if (body->loads > 0)
         json_object_set_new(line, "loads", json_integer(llround(body->loads)));
     if (cost->most > cost->least)

@@ -402,7 +402,11 @@ static void list_options(const struct stage *stage, struct argp_option *list)
         end++;
     if (stage->reports)
         end = add_option(end, "report", KEY_REPORT, "FILE", 0, stage->reports);
-    if (stage->estimates)
+    if (stage->estimates == ESTIMATES_INPUT)
+        end = add_option(end, "estimate", KEY_ESTIMATE, NULL, 0,
+                         "Print what the run of INPUT will take, as JSON, and do not "
+                         "run");
+    if (stage->estimates == ESTIMATES_SIZES)
         end = add_option(end, "estimate", KEY_ESTIMATE, "GRAINS", OPTION_ARG_OPTIONAL,
                          "Print what the run will take, as JSON, and do not run. "
                          "Without INPUT: for so many irregular grains, and as "
@@ -501,6 +505,10 @@ struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
         putchar('\n');
         exit(STATUS_OK);
     }
+    if (invocation.estimates && stage->estimates == ESTIMATES_INPUT &&
+        !invocation.n_input)
+        die(STATUS_USAGE,
+            "--estimate: name an input: what a run takes follows from it");
     if (invocation.estimates) return invocation;
     if (!strcmp(invocation.output, "-") && !invocation.tells && isatty(STDOUT_FILENO))
         die(STATUS_USAGE,

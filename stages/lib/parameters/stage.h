@@ -30,6 +30,9 @@
 
 #include <stdbool.h>
 
+// Whether a stage says what a run will take, of its input alone or also of sizes.
+enum estimates { ESTIMATES_NOTHING, ESTIMATES_INPUT, ESTIMATES_SIZES };
+
 // What a stage says of itself. A static constant of the program.
 struct stage {
     const char *name;
@@ -42,10 +45,10 @@ struct stage {
     const char *notes;                  // more for --help; may be NULL
     const char *reports; // what --report FILE writes; NULL: there is no such option
     bool checkpoints;    // whether it can be stopped and gone on with: --checkpoint
-    bool estimates;      // whether it says what a run will take: --estimate
-    bool tells;          // without -o it tells people, in text, what it found
-    bool writes_page;    // for people, which has no schema
-    bool transcribes;    // it writes what it read: what is wrong is wrong in the input
+    enum estimates estimates; // whether it says what a run will take: --estimate
+    bool tells;               // without -o it tells people, in text, what it found
+    bool writes_page;         // for people, which has no schema
+    bool transcribes; // it writes what it read: what is wrong is wrong in the input
 };
 
 // What the user asked for on this call.
