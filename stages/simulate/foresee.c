@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine is made, as it finds the time step, and asked; nothing moves:
+// The engine is made, because it finds the time step, and asked; nothing moves:
 //     steps     = duration / time step,
 //     snapshots = duration / interval + 1, with as many contacts as at the start, and
 //                 not fewer than LOOSE a grain.
@@ -56,6 +56,8 @@ enum status foresee_run(const struct simulate_parameters *parameters,
     *cost = cost_of_motion(&expected);
     cost->least = cost_of_motion(&least).seconds;
     cost->most = cost_of_motion(&most).seconds;
+    if (parameters->write == WRITE_PACKING)
+        cost->disk = cost_of_packing(expected.grains, MOVING_NOT).disk;
     dem_free(dem);
     return STATUS_OK;
 }
