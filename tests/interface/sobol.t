@@ -44,4 +44,7 @@ for words, status, line in [((at("design.tsv"), at("none.tsv"), "cracks", folder
     ok(said.returncode == status and line in said.stderr and "Traceback" not in said.stderr, f"{line}: refused", said.stderr)
 said = tool("design", "ten", at("other.tsv"), "a=1,2")
 ok(said.returncode == 64 and "must be a count" in said.stderr and not os.path.exists(at("other.tsv")), "ten runs: refused", said.stderr)
+planned = subprocess.run(["make", "-n", "sobol", f"RUNS={folder.name}/runs"], capture_output=True, text=True, check=False)
+ok(planned.returncode == 0 and not planned.stderr and not os.path.exists(at("runs")), "make -n: says what it would run, and makes nothing",
+   planned.stderr)
 done()

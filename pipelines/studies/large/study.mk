@@ -12,7 +12,7 @@ large_folder := $(RUNS)/large
 # Stage $2, program $3, of the scene, with overrides $4 and inputs $5; its cost is kept.
 large_step = $(call step,$(large_folder)/$1,$2,pipelines/studies/large/timed $3,$(large_scene),$4,$(5:%=$(large_folder)/%))
 
-large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (an hour)
+large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (six minutes of two cores)
 
 ifneq ($(call asked,large,$(large_folder)),)
 $(call must,GRAINS,$(whole),a whole number)
