@@ -135,7 +135,7 @@ environment = {**os.environ, "BIN": BIN, "MAKEFLAGS": ""}
 study = lambda what: subprocess.run([os.path.abspath("pipelines/study/study"), what, at("study.json"), f"--runs={at('runs')}"],
                                     capture_output=True, text=True, env=environment, timeout=120)
 said = study("plan").stdout
-ok("40 runs" in said and re.search(r"of one core, as stages foresee it and [\d.]+ MB of disk", said), "plan says what stages foresee", said)
+ok("40 runs" in said and re.search(r"of one core, as stages foresee it; [\d.]+ MB of disk", said), "plan says what stages foresee", said)
 said = study("batch")
 with open(at("runs/study/study.sbatch"), encoding="utf-8") as file:
     script = file.read()
