@@ -353,7 +353,7 @@ bench-replay: ## error of both engines of the replay against time, and time agai
 bench-dry: ## time of drying and of invasion percolation against size (ten minutes)
 bench-network: ## measure time and memory of the tessellation, next to voro++
 bench-flow: ## measure time and memory of the flow, next to Yade
-bench-scale: ## each stage on irregular grains: time, growth, memory, files at three sizes (an hour)
+bench-scale: ## each stage on irregular grains: time, growth, memory, files at three sizes (ten minutes)
 bench-estimates: ## what --estimate of each stage says, over what it takes (three minutes)
 bench-studies: ## what a study costs beside its stages, next to the shell and snakemake (two minutes)
 bench-report: ## the page of 50,000 grains in a headless Chromium: first picture, slider, turning

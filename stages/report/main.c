@@ -33,8 +33,7 @@ static const struct parameter table[] = {
 static const struct stage stage = {
     .name = "report",
     .version = STAGE_VERSION,
-    .summary = "report -- a page on which a run shows itself: the body in 3D, curves, "
-               "numbers, warnings",
+    .summary = "report -- a page that shows a run: the body in 3D, curves, numbers",
     .reads = "the folder of a run, or its artifacts: packing, network, drying, forces, "
              "response, crackstats (of the run; of several), check; a flow; a motion; "
              "several folders of runs, or one that holds such folders",

@@ -22,8 +22,7 @@
 static const struct stage stage = {
     .name = "simulate",
     .version = STAGE_VERSION,
-    .summary = "simulate -- discrete elements for any scene of grains, walls and "
-               "liquid [K 4, G]",
+    .summary = "simulate -- discrete elements for any scene: grains, walls, liquid [G]",
     .reads = "packing",
     .writes = "motion",
     .most_inputs = 2,

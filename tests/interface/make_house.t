@@ -132,6 +132,8 @@ is 'every stage is installed' "$stages" "$(cd "$root/libexec/craquelure" && echo
 is 'and nothing but the front command is in the path' craquelure "$(ls "$root/bin")"
 listed=$("$root/bin/craquelure" --help | sed -n 's/^  \([a-z-]*\)  .*/\1/p' | sort | xargs)
 is 'craquelure --help lists them all' "$stages" "$listed"
+cut_off=$(for stage in $stages; do "$root/libexec/craquelure/$stage" --help | sed -n 3p; done | xargs)
+is 'each with the whole line of what it does' '' "$cut_off"
 is 'craquelure --version' 'craquelure 0.1.0' "$("$root/bin/craquelure" --version)"
 is 'craquelure dry --version' "$("$BIN/dry" --version)" "$("$root/bin/craquelure" dry --version)"
 ln -s "$root/bin/craquelure" "$scratch/link"
