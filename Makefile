@@ -11,9 +11,12 @@ SHELL := /bin/bash
 .DEFAULT_GOAL := all
 MAKECMDGOALS ?=
 
+# What the machine is and how many cores it has, asked for once.
+machine := $(shell echo $$HOSTTYPE; exec nproc)
+
 # Every core, unless -j on the command line or the make above says otherwise.
 ifeq ($(MAKELEVEL),0)
-MAKEFLAGS += -j$(shell nproc)
+MAKEFLAGS += -j$(lastword $(machine))
 endif
 
 # --- settings -------------------------------------------------------------------------
@@ -44,7 +47,7 @@ CC := $(call default,CC,gcc)
 CXX := $(call default,CXX,g++)
 AR := $(call default,AR,ar)
 SANITIZE ?=# 1 builds with the address and undefined-behaviour sanitizers
-ARCH ?= $(if $(filter x86_64,$(shell uname -m)),-march=x86-64-v3)
+ARCH ?= $(if $(filter x86_64,$(machine)),-march=x86-64-v3)
 OPTIMISE ?= $(if $(SANITIZE),-O1 -fno-omit-frame-pointer,-O3)
 EXTRA_CFLAGS ?=
 
@@ -250,7 +253,7 @@ include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # A file, for there may be more recipes than a command line holds; this make's own, for there may
 # be several at work.
-recipes := $(shell mkdir -p $(BUILD) && mktemp $(BUILD)/recipes.XXXXXX)
+recipes := $(shell $(if $(wildcard $(BUILD)),,mkdir -p $(BUILD) &&) mktemp $(BUILD)/recipes.XXXXXX)
 $(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
 stale := $(shell tools/memo check $(recipes) $(BUILD)/digests)
 ifneq ($(.SHELLSTATUS),0)

@@ -16,7 +16,7 @@ coupled_scene_irregular := samples/soft-300.json
 # The lowest layer is held: on a wall alone the aggregate may come apart between two portions.
 coupled_scene_stiff := samples/stiff-5x5x10.json force-protocol.force_scale=1 dem-replay.support=fixed dem-replay.damping_ratio=0.7 dem-replay.local_damping=0 dem-replay.time_step_safety=0.045
 coupled_stages := pack tessellate merge-nodes dry force-protocol dem-replay deform crackstats
-coupled_version := $(shell echo $(foreach s,$(coupled_stages),$(call version_of,$s)) | tr ' ' .)
+coupled_version = $(call once,coupled_version,printf '%s\n' $(foreach s,$(coupled_stages),$(call version_of,$s)) | paste -sd.)
 
 # Sample $1 in $2 portions.
 define coupled_run
