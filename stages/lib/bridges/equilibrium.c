@@ -71,11 +71,12 @@ static bool judge(const struct problem *problem, const double *previous,
         state->direction[n] = tangent[n] / size;
     state->rate = dot(widening, state->direction);
 
+    state->symmetry = INFINITY;
+    if (problem->to_turning && problem->symmetric) return isfinite(size);
     at.symmetric = false;
-    is = system_at(&at, &state->unknowns);
+    if (problem->symmetric) is = system_at(&at, &state->unknowns);
     memcpy(is.slope[3], state->direction, sizeof widening);
-    const double symmetry = eliminate(is.slope, is.residual);
-    state->symmetry = problem->to_turning && problem->symmetric ? INFINITY : symmetry;
+    state->symmetry = eliminate(is.slope, is.residual);
     return isfinite(size);
 }
 
