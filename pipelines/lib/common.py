@@ -9,8 +9,7 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
-import numpy as np
+# h5py and numpy take longer to load than all else: only what uses them does that.
 
 LIBRARY = os.path.dirname(os.path.realpath(__file__))
 BIN = os.environ.get("BIN") or os.path.realpath(f"{LIBRARY}/../../build/bin")
@@ -43,6 +42,7 @@ def artifact(path, kind=None):
     """The artifact at PATH, an open h5py.File; ends (66, 65) where there is none of this KIND."""
     if not os.path.exists(path):
         refuse(66, f"{path}: no such file")
+    import h5py
     try:
         file = h5py.File(path)
         schema = bytes(file.attrs["schema"]).decode()
@@ -132,6 +132,7 @@ def segments(first, last):
 
 def circle(x, y, radius):
     """A polygon of 24 sides, for text_of."""
+    import numpy as np
     turn = 2 * np.pi * np.arange(25) / 24
     return [*np.column_stack([x + radius * np.cos(turn), y + radius * np.sin(turn)]), None]
 

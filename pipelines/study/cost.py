@@ -61,7 +61,7 @@ def sizes(plan, folder):
 def asked(stage, scene, sets, sizes, grains):
     """What a STAGE says that it will take (--estimate), of SIZES or of the file GRAINS; None: it does not
     say, or another program is in its place."""
-    if stages.own_program(stage) or "--estimate" not in stages.ask(stage, "--help"):
+    if stages.own_program(stage):
         return None
     words = [f"--estimate={sizes}" if sizes else "--estimate", "-p", scene, *(w for item in sets for w in ("--set", item)), *grains]
     said = subprocess.run([stages.program(stage), *words], capture_output=True, text=True, stdin=subprocess.DEVNULL)

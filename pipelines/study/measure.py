@@ -5,11 +5,20 @@ import json
 import os
 import re
 
-import numpy as np
-
 from common import artifact
 
-TAKEN = {"first": lambda x: x.flat[0], "last": lambda x: x.flat[-1], "least": np.nanmin, "largest": np.nanmax, "mean": np.nanmean}
+TAKEN = ("first", "last", "least", "largest", "mean")
+
+
+def take(values, taken):
+    """What is TAKEN of VALUES; None: there are none."""
+    import numpy as np  # which most studies do without
+    values = np.asarray(values)
+    if not values.size:
+        return None
+    if taken in ("first", "last"):
+        return values.flat[0 if taken == "first" else -1].item()
+    return {"least": np.nanmin, "largest": np.nanmax, "mean": np.nanmean}[taken](values).item()
 
 
 def of_json(document, path):
@@ -25,8 +34,7 @@ def of_json(document, path):
             return None
     if taken not in TAKEN or not isinstance(document, list):
         return document
-    values = np.array([x for x in document if isinstance(x, (int, float))])
-    return TAKEN[taken](values).item() if values.size else None
+    return take([x for x in document if isinstance(x, (int, float))], taken)
 
 
 def of_hdf5(file, path):
@@ -38,10 +46,9 @@ def of_hdf5(file, path):
         return file[group or "/"].attrs[name].item()
     if where not in file or not hasattr(file[where], "shape"):
         return None
-    values = np.asarray(file[where][()])
-    if taken not in TAKEN and values.size != 1:
+    if taken not in TAKEN and file[where].size != 1:
         return None
-    return TAKEN.get(taken, lambda x: x.flat[0])(values).item() if values.size else None
+    return take(file[where][()], taken if taken in TAKEN else "first")
 
 
 def number(value):
