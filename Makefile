@@ -299,7 +299,7 @@ shared := tools/memo $(pipeline_files) Makefile VERSION $(wildcard *.md docs/*.m
 	samples/*.json schemas/*.json stages/*/version)
 shared_mode = $(if $(filter $(shared_scripts),$1),755,644)
 
-# Under DESTDIR: the file to put there, where, and with what mode.
+# Under DESTDIR: the file to put there, where (by its own name), and with what mode.
 installed := $(SAMPLES:%=%:lib/craquelure/samples.so:644) $(foreach s,$(STAGES),$(BUILD)/bin/$s:libexec/craquelure/$s:755) \
 	$(FRONT):bin/craquelure:755 $(foreach m,$(MAN),$m:share/man/man1/$(notdir $m):644) \
 	$(COMPLETION):share/bash-completion/completions/craquelure:644 \
@@ -308,11 +308,13 @@ installed := $(SAMPLES:%=%:lib/craquelure/samples.so:644) $(foreach s,$(STAGES),
 
 .PHONY: install uninstall
 install: all $(FRONT) $(MAN) $(COMPLETION) ## install under PREFIX (and DESTDIR)
-	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
-		install -D -m $$mode $$from '$(DESTDIR)$(PREFIX)'/$$to; done
+	@declare -A files=(); for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
+		files[$$mode:$${to%/*}]+=" $$from"; done; \
+	for group in "$${!files[@]}"; do \
+		install -D -m $${group%%:*} -t '$(DESTDIR)$(PREFIX)'/$${group#*:} $${files[$$group]}; done
 uninstall: ## remove what install put there
-	@for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
-		rm -f '$(DESTDIR)$(PREFIX)'/$$to; done
+	@files=(); for item in $(installed); do IFS=: read -r from to mode <<<$$item; \
+		files+=('$(DESTDIR)$(PREFIX)'/$$to); done; rm -f "$${files[@]}"
 	@for folder in lib libexec share; do if [[ -d '$(DESTDIR)$(PREFIX)'/$$folder/craquelure ]]; then \
 		find '$(DESTDIR)$(PREFIX)'/$$folder/craquelure -depth -type d -empty -delete; fi; done
 

@@ -31,7 +31,7 @@ def write(name, content):
 def study(what, name, *words, status=0, **environment):
     """What the study of file NAME says; artifacts made, by kind."""
     ended = subprocess.run([STUDY, what, at(name), "--runs=runs", "-j2", *words], text=True, capture_output=True,
-                           cwd=folder.name, timeout=120, env={**os.environ, "MAKEFLAGS": "", "BIN": BIN, **environment})
+                           cwd=folder.name, timeout=600, env={**os.environ, "MAKEFLAGS": "", "BIN": BIN, **environment})
     made = [line.split()[1].split("/")[0] for line in ended.stdout.splitlines() if line.startswith("  RUN")]
     counts = {kind: made.count(kind) for kind in dict.fromkeys(made)}
     if ended.returncode != status:
@@ -187,7 +187,7 @@ ok(table("small")[0]["why"] == "was interrupted", "what was killed half-way was 
 
 if shutil.which("makeflow"):
     fine, counts, said, _ = study("makeflow", "small.json", "--name=flow")
-    subprocess.run(["makeflow", "--json", "study.makeflow.json", "-j2"], cwd=at("runs/flow"), capture_output=True, timeout=120)
+    subprocess.run(["makeflow", "--json", "study.makeflow.json", "-j2"], cwd=at("runs/flow"), capture_output=True, timeout=600)
     ok(fine and "27 rules" in said and "0 of 27 artifacts to make" in study("plan", "small.json", "--name=flow")[2],
        "Makeflow makes all of a study, and make knows it", said)
     alike = [read(at("runs/flow", r["artifacts"][kind])) == read(at("runs/small", r["artifacts"][kind]))
@@ -273,7 +273,7 @@ cp {at('full/lean/runs.tsv')} {at('after.tsv')}
 os.mkdir(at("full"))
 able = subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "none", at("full")], capture_output=True).returncode == 0
 if able:
-    ended = subprocess.run(["unshare", "-rm", "bash", at("disk"), "200k"], capture_output=True, text=True, timeout=120)
+    ended = subprocess.run(["unshare", "-rm", "bash", at("disk"), "200k"], capture_output=True, text=True, timeout=600)
     first = read(at("first")).decode() if os.path.exists(at("first")) else ""
     every = [line.split("\t") for line in read(at("after.tsv")).decode().splitlines()] if ended.returncode == 0 else []
     ok(ended.returncode == 0 and "Traceback" not in first and len(every) == 9 and all(r[-2] == "done" for r in every[1:]),
