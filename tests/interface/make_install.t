@@ -93,19 +93,19 @@ refused 'the status is that of the stage that failed' 65 'words.txt: line 1: mus
 
 # --- demo --------------------------------------------------------------------------------
 
-craquelure demo 'scenes/small scene.json' --seeds=1,4 >"$scratch/demo" 2>/dev/null
+craquelure demo 'scenes/small scene.json' --seeds=1,4,2 >"$scratch/demo" 2>/dev/null
 is 'demo says what broke in both limits' 'immobile: inviscid:' \
     "$(grep -o '^[a-z]*:.* bonds broke' "$scratch/demo" | cut -d' ' -f1 | sort | xargs)"
-# Two draws: Student's t of one degree of freedom is tan(0.475 pi) at 95 %.
+# Three draws: Student's t of two degrees of freedom is 0.95 sqrt(2 / (1 - 0.95^2)) at 95 %.
 for limit in inviscid immobile; do
-    mean=$(for run in . seed-4; do
+    mean=$(for run in . seed-4 seed-2; do
         craquelure inspect runs/small_scene/$limit/$run/response.h5 | jq .summary.cracks; done |
         jq -rs --arg limit $limit 'def few: if . < 10 then . * 10 | round / 10 else round end;
-            (add / 2) as $mean | (map(. - $mean | . * .) | add | sqrt) as $sd
-            | ((0.475 * 3.141592653589793 | tan) * $sd / (2 | sqrt)) as $half
+            (add / 3) as $mean | (map(. - $mean | . * .) | add / 2 | sqrt) as $sd
+            | (0.95 * (2 / (1 - 0.95 * 0.95) | sqrt) * $sd / (3 | sqrt)) as $half
             | "\($limit): \($mean | few) of 20 bonds broke (95 % interval of the mean \([0, $mean - $half]
-                | max | few) to \($mean + $half | few), 2 draws of the throat radii: \(min) to \(max))"')
-    is "$limit: the mean of two draws, its interval and their range" "$mean" \
+                | max | few) to \($mean + $half | few), 3 draws of the throat radii: \(min) to \(max))"')
+    is "$limit: the mean of three draws, its interval and their range" "$mean" \
         "$(grep -o "^$limit: .*draws of the throat radii: [0-9]* to [0-9]*)" "$scratch/demo")"
 done
 for page in study inviscid/report immobile/report; do
