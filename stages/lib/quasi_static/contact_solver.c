@@ -78,7 +78,12 @@ void contact_solver_free(struct contact_solver *solver)
 
 bool contact_solver_is_full(const struct contact_solver *solver)
 {
-    return solver->count == solver->most_rows;
+    return solver->count >= solver->most_rows;
+}
+
+void contact_solver_set_most_rows(struct contact_solver *solver, int most_rows)
+{
+    solver->most_rows = most_rows;
 }
 
 int contact_solver_count(const struct contact_solver *solver)

@@ -45,6 +45,9 @@ bool contact_solver_add(struct contact_solver *solver, int count,
                         const struct pair_rows *new);
 int contact_solver_count(const struct contact_solver *solver); // of rows
 
+// From now on at most MOST ROWS; more that are there already stay.
+void contact_solver_set_most_rows(struct contact_solver *solver, int most_rows);
+
 // Whether there is no room for more of them.
 bool contact_solver_is_full(const struct contact_solver *solver);
 

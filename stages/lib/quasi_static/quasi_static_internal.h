@@ -165,6 +165,11 @@ static inline bool has_splitting(const struct quasi_static *qs)
 // one. False: it did not come to rest.
 bool relax_to_equilibrium(struct quasi_static *qs);
 
+// The same by viscous relaxation alone, with as many rows as there may be: where the
+// splitting finds no step either. On false the iterate is the last step that was found,
+// so that grains have gone at least some of the way.
+bool relax_with_most_rows(struct quasi_static *qs);
+
 // ---- bonds and fragments ------------------------------------------------------------
 
 // Breaks the most overloaded bond, the first of equals. False: none is at its strength.

@@ -118,3 +118,13 @@ bool relax_to_equilibrium(struct quasi_static *qs)
     update_residual(qs);
     return false;
 }
+
+bool relax_with_most_rows(struct quasi_static *qs)
+{
+    contact_solver_set_most_rows(qs->contacts, MOST_ROWS);
+    const bool rests = viscous_relaxation(qs);
+    contact_solver_set_most_rows(qs->contacts, MOST_ROWS_WITH_FRICTION);
+    qs->damping = 0;
+    if (!rests) roll_back_state(qs);
+    return rests;
+}

@@ -5,7 +5,9 @@
 // E a share of the load over a mean radius. Each step is found by the splitting, ever
 // closer until Newton's method ends it. When dashpots carry little, equilibrium without
 // them is sought from there; if it is found, the steps so far count as one. Else the
-// step becomes history, and the next is ten times as long.
+// step becomes history, and the next is ten times as long. Where no step is found
+// (bonds that are softer than contacts by many digits), dashpots at pairs may still
+// find some [viscous_relaxation.c].
 //
 // A fragment that nothing holds has a dashpot of its own: it lets the fragment move by
 // twice what is small, so a step shows whether it comes to rest or leaves.
@@ -155,6 +157,7 @@ bool settle(struct quasi_static *qs)
     const bool is_for_newton = few_slide(qs);
     qs->damping = 0;
     if (is_for_newton && relax_to_equilibrium(qs)) return true;
+    const bool is_relaxed = is_for_newton && !contact_solver_is_full(qs->contacts);
     if (!is_for_newton) update_residual(qs);
     if (qs->is_unconverged || !has_splitting(qs)) return false;
     qs->tolerance_now = qs->setup.tolerance * qs->largest_load;
@@ -162,6 +165,7 @@ bool settle(struct quasi_static *qs)
     qs->splitting->change_of_load = fmin(largest_residual(qs), qs->largest_load);
     if (follow(qs, qs->splitting)) return true;
     roll_back_state(qs);
+    if (!is_relaxed && relax_with_most_rows(qs)) return true;
     update_residual(qs);
     return false;
 }
