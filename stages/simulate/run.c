@@ -124,6 +124,12 @@ static void record_end(struct run *run)
     if (is_new(run, "/snapshots/time")) take_snapshot(run);
 }
 
+// Whether grains move though no force acts on any: the unbalanced ratio is 0 then.
+static bool flies(const struct dem *dem)
+{
+    return dem_unbalanced_ratio(dem) <= 0 && dem_energy(dem).kinetic > 0;
+}
+
 // Only at multiples of CONTROL_EVERY, since the ratio costs O(pairs); these cycles are
 // the same after a restart. Before the first cycle no force is known, and the ratio
 // would be 0.
@@ -133,7 +139,7 @@ static bool is_at_rest(const struct run *run)
     return !isnan(run->parameters->stop_ratio) && dem_cycle(dem) > 0 &&
            dem_cycle(dem) % CONTROL_EVERY == 0 &&
            has_come(run, run->parameters->stop_after) &&
-           dem_unbalanced_ratio(dem) < run->parameters->stop_ratio;
+           dem_unbalanced_ratio(dem) < run->parameters->stop_ratio && !flies(dem);
 }
 
 // ---- cycles -------------------------------------------------------------------------

@@ -72,8 +72,6 @@ static void put_walls(struct artifact *artifact, const struct scene *scene)
         free(owned[k]);
 }
 
-// A crack opened in a cycle; the time step may have been shortened since, so it is the
-// share of the cycles that counts.
 static void put_cracks(struct artifact *artifact, const struct dem *dem)
 {
     int n;
@@ -84,7 +82,7 @@ static void put_cracks(struct artifact *artifact, const struct dem *dem)
     struct vector *position = NEW_ARRAY(struct vector, n);
     for (int k = 0; k < n; k++) {
         bond[k] = crack[k].bond;
-        time[k] = (double)crack[k].cycle / (double)dem_cycle(dem) * dem_time(dem);
+        time[k] = crack[k].time;
         mode[k] = crack[k].mode;
         position[k] = crack[k].position;
     }
@@ -151,13 +149,32 @@ static void keep_intact_bonds(const struct dem *dem, struct packing *packing)
     free(intact);
 }
 
-// Porosity over the box, overlaps counted twice, and the contacts of grains. The same
-// numbers as those of `pack`, by the same names, so that what reads a packing finds
-// them. Pairs across a gap (bonds, bridges) are no contacts.
+// m3, of what bounds the grains: a body that they lie in, or the box, without those
+// that they lie around. A round one has the edges of its box: pi/4 of it where round
+// about an axis, pi/6 in a sphere.
+static double bounded_volume(const struct packing *packing)
+{
+    static const double share[BODY_SHAPES] = {[BODY_BOX] = 1,
+                                              [BODY_CYLINDER] = M_PI / 4,
+                                              [BODY_SPHERE] = M_PI / 6,
+                                              [BODY_DISC] = M_PI / 4};
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    const double around = edge.x * edge.y * edge.z;
+    double within = 0, left_out = 0;
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body *body = &packing->body[k];
+        const struct vector e = subtract(body->upper, body->lower);
+        *(body->within ? &within : &left_out) += share[body->shape] * e.x * e.y * e.z;
+    }
+    return (within > 0 ? within : around) - left_out;
+}
+
+// Porosity over that volume, overlaps counted twice, and the contacts of grains. The
+// same numbers as those of `pack`, by the same names, so that what reads a packing
+// finds them. Pairs across a gap (bonds, bridges) are no contacts.
 static void put_packing_summary(struct artifact *artifact,
                                 const struct packing *packing, const struct dem *dem)
 {
-    const struct vector edge = subtract(packing->upper, packing->lower);
     double solid = 0, largest = 0;
     for (int i = 0; i < packing->n_particle; i++)
         solid += 4.0 / 3 * M_PI * pow(packing->radius[i], 3);
@@ -173,7 +190,7 @@ static void put_packing_summary(struct artifact *artifact,
     free(contact);
     const double ratio = dem_unbalanced_ratio(dem);
     artifact_put_number(artifact, "/summary/porosity",
-                        1 - solid / (edge.x * edge.y * edge.z));
+                        1 - solid / bounded_volume(packing));
     artifact_put_number(artifact, "/summary/max_overlap", largest);
     artifact_put_number(artifact, "/summary/coordination",
                         packing->n_particle > 0 ? 2.0 * touching / packing->n_particle

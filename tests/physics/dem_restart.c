@@ -52,6 +52,7 @@ static void assert_same_cracks(const struct dem *a, const struct dem *b)
         assert_int_equal(p[k].bond, q[k].bond);
         assert_int_equal(p[k].mode, q[k].mode);
         assert_int_equal(p[k].cycle, q[k].cycle);
+        assert_same("crack", &p[k].time, &q[k].time, sizeof p->time);
         assert_same("crack", &p[k].position, &q[k].position, sizeof p->position);
     }
 }

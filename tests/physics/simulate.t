@@ -140,6 +140,12 @@ near(motion["history/wall_force"][-1, 1, 2], 4 / 3 * modulus * math.sqrt(1e-3) *
      "an elastic grain between elastic plates pushes as Hertz says")
 near(sunk, 1.0005e-5, 1e-3, "a wall that follows a table of time stops where the table says")
 
+# Before grains touch, their unbalanced ratio says nothing: they are not at rest.
+motion = simulate(packing([0, 0, 5e-3, 1e-3]),
+                  {"duration": 0.02, "gravity": [0, 0, 0], "walls": {"floor": {"point": [0, 0, 0]}},
+                   "groups": {"ball": {"initial": {"velocity": [0, 0, -1]}}}, "stop": {"unbalanced_ratio": 1e-3}})
+ok(motion["history/momentum"][-1, 2] > 0, "a grain that flies is not at rest", motion["summary"].attrs["time"])
+
 # --- a box that repeats ------------------------------------------------------------------------------
 sc = packing(lattice, (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, True))
 motion = simulate(sc, {"duration": 0.01, "gravity": [0, 0, 0], "box": {"strain_rate": [0, 0, -0.1]},
@@ -150,6 +156,24 @@ near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate t
 near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
      "and stresses the lattice by its stiffness")
 ok("work" not in motion["history"], "record.energy=false keeps no balance")
+
+# --- bonds -------------------------------------------------------------------------------------------
+# A ball breaks a bond at 0.02 s, then small grains close in on another ball and shorten the time step.
+turns = [math.acos(1 - (2 * k + 1) / 24) for k in range(24)]
+out = np.array([[math.sin(a) * math.cos(2.4 * k), math.sin(a) * math.sin(2.4 * k), math.cos(a)]
+                for k, a in enumerate(turns)])
+grains = [[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3], [24e-3, 0, 0, 1e-3], [0.1, 0, 0, 1e-3]]
+grains += [[0.1 + x, y, z, 2e-4] for x, y, z in 2e-3 * out]
+starts = {"ball": {"grains": [2], "initial": {"velocity": [-1, 0, 0]}},
+          **{f"small{k}": {"grains": [4 + k], "initial": {"velocity": list(-way / 50)}} for k, way in enumerate(out)}}
+motion = simulate(packing(grains, bonds="touching"),
+                  {"duration": 0.045, "gravity": [0, 0, 0], "groups": starts, "record": {"every": 1e-4},
+                   "bond": {"kind": "parallel", "normal_strength": 1e3, "normal_stiffness": 1e9,
+                            "shear_stiffness": 1e9}})
+ran = motion["summary"].attrs
+opened = motion["history/time"][np.argmax(motion["history/dissipation"][:, 3] > 0)]
+ok(ran["cycles"] * ran["time_step"] < 0.9 * ran["time"] and 0 <= opened - motion["cracks/time"][0] < 1.1e-4,
+   "a crack has its time, also where the time step is shortened later", (opened, motion["cracks/time"][()]))
 
 # --- balance -----------------------------------------------------------------------------------------
 def imbalance(step):
@@ -240,6 +264,12 @@ with h5py.File(at("end")) as end:
         ok((end["particles/position"][()] == motion["snapshots/position"][-1]).all(),
            "write=packing has the grains as they are at the end")
 ok(len(run("tessellate", at("end"))) > 1000, "which tessellate takes")
+with open(at("still.json"), "w") as file:
+    json.dump({"materials": SOFT, "duration": 0, "write": "packing"}, file)
+run("simulate", "-q", "-p", at("still.json"), at("cell"), "-o", at("still"))
+for key in "porosity", "coordination", "max_overlap":
+    near(h5py.File(at("still"))["summary"].attrs[key], h5py.File(at("cell"))["summary"].attrs[key], 1e-12,
+         f"its {key} is that of pack, in a ring")
 
 # --- a checkpoint of a step that was shortened ---------------------------------------------------------
 done()

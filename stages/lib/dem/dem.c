@@ -213,6 +213,7 @@ static void record_crack(struct dem *dem, int pair, int mode)
         .bond = bond,
         .mode = (uint8_t)mode,
         .cycle = dem->cycle,
+        .time = dem_time(dem),
         .position = scale(dem->unit.length, pair_geometry(dem, pair, 1).position)};
 }
 

@@ -227,6 +227,7 @@ struct dem_crack {
     int32_t bond;           // as numbered in the packing
     uint8_t mode;           // enum dem_crack_mode
     int64_t cycle;          // cycles completed when it broke
+    double time;            // s, in those cycles; of explicit time steps only
     struct vector position; // m, the contact point
 };
 

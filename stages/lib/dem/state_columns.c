@@ -218,6 +218,7 @@ static void add_cracks(struct column_list *list, struct dem *dem)
     CRACK("crack_mode", ARRAY_UINT8, mode, DEM_CRACK_SHEAR);
     CRACK("crack_cycle", ARRAY_INT64, cycle, LARGEST_COUNT);
 #undef CRACK
+    add_numbers(list, "crack_time", OF(dem->crack, struct dem_crack, time), 1, n);
     add_numbers(list, "crack_position", OF(dem->crack, struct dem_crack, position), 3,
                 n);
 }
