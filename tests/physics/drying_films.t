@@ -96,12 +96,16 @@ with dry(net, "rings=films", "films.conductance=1e-12") as file:
     ok(np.array_equal(file["events/throat"][:], isolated["events/throat"][:]) and
        np.allclose(file["events/time"][:], isolated["events/time"][:], rtol=1e-5, atol=0),
        "films that conduct next to nothing: nearly so", abs(file["events/time"][:] / isolated["events/time"][:] - 1).max())
-with dry(net, "rings=joined", name="joined") as joined, dry(net, "rings=films", "films.conductance=1e5") as file:
+# With 1e12 all levels are equal in the digits of one number.
+with dry(net, "rings=joined", name="joined") as joined:
     joined_events = joined["events/throat"][:]
-    ok(np.allclose(rate_at(file, LEVELS), rate_at(joined, LEVELS), rtol=1e-6) and
-       abs(file["summary"].attrs["residual_saturation"] / joined["summary"].attrs["residual_saturation"] - 1) < 1e-6 and
-       abs(file["history/time"][-1] / joined["history/time"][-1] - 1) < 1e-6,
-       "films that conduct well: the rates of films without resistance", (rate_at(file, LEVELS), rate_at(joined, LEVELS)))
+    for factor in "1e5", "1e12":
+        with dry(net, "rings=films", f"films.conductance={factor}") as file:
+            ok(np.allclose(rate_at(file, LEVELS), rate_at(joined, LEVELS), rtol=1e-6) and
+               abs(file["summary"].attrs["residual_saturation"] / joined["summary"].attrs["residual_saturation"] - 1) < 1e-6 and
+               abs(file["history/time"][-1] / joined["history/time"][-1] - 1) < 1e-6,
+               f"films that conduct well, {factor}: the rates of films without resistance",
+               (rate_at(file, LEVELS), rate_at(joined, LEVELS)))
 
 # Between two solutions the cluster nearest to its least supplies: without resistance, that of the widest throat anywhere.
 # Parts that no film joins at the last solution may come too early or too late.

@@ -132,14 +132,29 @@ static void free_sites_free(struct free_sites *sites)
 
 // --- the residual ------------------------------------------------------------------
 
-// The sum of what does not balance, less what rounding of levels makes.
+// The sum of the flows to and from site I, by size.
+static double flows_at(const struct film_flow *flow, int i)
+{
+    const struct conductance_matrix *matrix = flow->matrix;
+    double sum = 0;
+    for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
+        sum += matrix->value[k] * fabs(compensated_difference(
+                                      flow->level[matrix->column[k]], flow->level[i]));
+    return sum;
+}
+
+// The sum of what does not balance, less what rounding makes: of flows, which are large
+// until all sites are held that must be, and of levels, which have the digits of two
+// numbers. With those of one all levels would be equal where films conduct 1e9 times
+// what evaporates.
 static double imbalance(const struct film_flow *flow, const double *residual)
 {
     double sum = 0, rounding = 0;
     for (int i = 0; i < flow->matrix->n; i++) {
         if (flow->held[i]) continue;
+        const double level = compensated_value(flow->level[i]);
         sum += fabs(residual[i]);
-        rounding += flow->matrix->diagonal[i] * compensated_value(flow->level[i]);
+        rounding += flows_at(flow, i) + 1e-15 * flow->matrix->diagonal[i] * level;
     }
     return sum - 1e-15 * rounding;
 }

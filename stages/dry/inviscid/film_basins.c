@@ -115,8 +115,8 @@ static int upstream(const struct film_flow *flow, int i)
     int best = -1;
     for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
         const int j = matrix->column[k];
-        const double inflow = matrix->value[k] * (compensated_value(flow->level[j]) -
-                                                  compensated_value(flow->level[i]));
+        const double inflow =
+            matrix->value[k] * compensated_difference(flow->level[j], flow->level[i]);
         if (!(inflow > most)) continue;
         most = inflow;
         best = j;

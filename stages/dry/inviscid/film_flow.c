@@ -26,6 +26,9 @@ static const double COARSE = 1e4;
 
 // Sweeps of projected Gauss-Seidel before each of the first rounds.
 enum { SWEEPS = 3, RELAXED = 5 };
+// They round levels. No level above its least by less than this part frees a site: it
+// may be the last one held in its part of the network, which rounding must not free.
+static const double ROUNDING = 1e-12;
 
 enum { MOST_ROUNDS = 1000 };
 
@@ -34,9 +37,9 @@ static int change_held(struct film_flow *flow, double tolerance, const double *r
 {
     int changed = 0;
     for (int i = 0; i < flow->matrix->n; i++) {
-        const double level = compensated_value(flow->level[i]);
-        const bool hold =
-            flow->held[i] ? !(residual[i] > tolerance) : level < flow->least[i];
+        const struct compensated least = {.value = flow->least[i]};
+        const double above = compensated_difference(flow->level[i], least);
+        const bool hold = flow->held[i] ? !(residual[i] > tolerance) : above < 0;
         changed += hold != flow->held[i];
         flow->held[i] = hold;
         if (hold) flow->level[i] = (struct compensated){.value = flow->least[i]};
@@ -73,9 +76,10 @@ static void relax(struct film_flow *flow, bool may_hold)
             level[i] = balanced_level(flow, level, i);
     }
     for (int i = 0; i < n; i++) {
-        const bool low = !(level[i] > flow->least[i]);
+        const bool low = !(level[i] > (1 + ROUNDING) * flow->least[i]);
         flow->held[i] = low && (may_hold || flow->held[i]);
-        flow->level[i] = (struct compensated){.value = level[i]};
+        flow->level[i].value = flow->held[i] ? flow->least[i] : level[i];
+        flow->level[i].lost = 0;
     }
     free(level);
 }

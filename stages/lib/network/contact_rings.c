@@ -132,11 +132,18 @@ static enum status ring_volume(const struct network *network,
     return status == STATUS_NO ? STATUS_OK : status;
 }
 
-static enum status refuse_ring(int face, struct reason *reason)
+static enum status refuse_ring(const struct network *network,
+                               const struct contact_rings *rings, int face,
+                               struct reason *reason)
 {
+    const int32_t *grain = network->face_particles[face];
+    const double apart = rings->separation[face];
     return refuse(reason, STATUS_NOT_CONVERGED,
-                  "/faces/particles: row %d: no ring was found between these grains",
-                  face);
+                  "/faces/particles: row %d: no ring was found between grains %d and "
+                  "%d, of radii %.4g and %.4g m, which %s by %.4g m",
+                  face, grain[0], grain[1], network->packing.radius[grain[0]],
+                  network->packing.radius[grain[1]],
+                  apart < 0 ? "overlap" : "are apart", fabs(apart));
 }
 
 bool limit_parts(const struct network *network, const struct contact_rings *rings,
@@ -232,7 +239,7 @@ enum status ring_volumes(const struct network *network,
     free(by.first);
     free(by.part);
     free(by.throat);
-    if (failed < network->n_face) return refuse_ring(failed, reason);
+    if (failed < network->n_face) return refuse_ring(network, rings, failed, reason);
     *limited = 0;
     for (int t = 0; t < network->n_throat; t++)
         *limited += limit_parts(network, rings, t, volume);
@@ -252,5 +259,5 @@ enum status whole_rings(const struct network *network,
             failed = f < failed ? f : failed;
     }
     if (failed == network->n_face) return STATUS_OK;
-    return refuse_ring(failed, reason);
+    return refuse_ring(network, rings, failed, reason);
 }
