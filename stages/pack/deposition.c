@@ -3,7 +3,9 @@
 // floor until they are at rest (K 4.20, and no grain still falls). The stiffness is
 // chosen so that the contacts on the floor overlap by about `overlap` under all the
 // weight above,
-//     F = rho g h (1 - porosity) (2 R)^2,   k = 2 F / (overlap R).
+//     F = rho g h (1 - porosity) (2 R)^2,   k = 2 F / (overlap R),
+// and that no grain of radius r sinks deeper by its own weight: F/R >= m g/r. In a thin
+// bed grains would fall through the floor otherwise.
 // The cloud starts at the loose fraction and is made thinner until all grains find a
 // place; in the end the highest grain closes the box. Trap: at rest is the unbalanced
 // ratio of [K 4.20] below the tolerance, which is a mean; a single grain may still
@@ -65,19 +67,20 @@ static double stiffness_for(const struct making *making)
     const struct dynamics_parameters *how = making->how;
     if (!isnan(how->stiffness)) return how->stiffness;
     const struct packing *packing = making->packing;
-    double radius = 0, volume = 0;
+    double radius = 0, volume = 0, largest = 0;
     for (int i = 0; i < packing->n_particle; i++) {
         const double r = packing->radius[i];
         radius += r / packing->n_particle;
         volume += 4.0 / 3 * M_PI * r * r * r;
+        largest = fmax(largest, r);
     }
     const struct vector edge = subtract(making->domain->upper, making->domain->lower);
     const double area =
         making->domain->dimensions == 2 ? edge.x * 2 * radius : edge.x * edge.y;
     const double weight =
         how->density * how->gravity * volume / area; // Pa on the floor
-    const double force = weight * 4 * radius * radius;
-    return 2 * force / (how->overlap * radius);
+    const double own = how->density * how->gravity * 4 / 3 * M_PI * largest * largest;
+    return 2 * fmax(weight * 4 * radius, own) / how->overlap;
 }
 
 // The highest point of a grain becomes the top of the box.

@@ -207,6 +207,11 @@ for title, settings in [("space", ["count=200", "sizes.distribution=normal"]),
        and made.reached["unbalanced_ratio"] < 1e-4, f"{title}: the box ends on the highest",
        made.deepest())
 
+# A few grains on a wide floor carry nothing but themselves: they sink in by half of dynamics.overlap.
+made = Packing("method=deposition", "count=12", "radius=1e-3", "upper=[1,1,0.1]")
+sunk = 1 - (made.x[:, 2] - made.lower[2]) / made.r
+ok(np.allclose(sunk, 0.5e-3, rtol=1e-3, atol=0), "a few grains stay on a wide floor", sunk)
+
 # Bonded grains fall as others do.
 bonded = os.path.join(folder.name, "bonded.h5")
 run("pack", "-q", *sets("method=cubic", "counts=[3,3,3]", "bonds=touching"), "-o", bonded)
