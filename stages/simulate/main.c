@@ -123,6 +123,33 @@ static void warn_of_servos(const struct scene *scene, const struct outcome *outc
     }
 }
 
+// Stages after this one refuse grains outside of the box.
+static void warn_of_grains_outside(const struct scene *scene,
+                                   const struct outcome *outcome)
+{
+    struct vector lower, upper;
+    dem_box(outcome->dem, &lower, &upper);
+    const struct packing *packing = scene->setup.packing;
+    const int n = packing->n_particle;
+    struct vector *x = NEW_ARRAY(struct vector, n);
+    dem_positions(outcome->dem, x);
+    int outside = 0, first = -1;
+    for (int i = 0; i < n; i++) {
+        bool in = true;
+        for (int axis = 0; axis < 3; axis++)
+            in = in && (packing->periodic[axis] ||
+                        (component(x[i], axis) >= component(lower, axis) &&
+                         component(x[i], axis) <= component(upper, axis)));
+        outside += !in;
+        if (!in && first < 0) first = i;
+    }
+    free(x);
+    if (outside > 0)
+        report("%d of %d grains, grain %d the first, end outside of the packing's box: "
+               "take it in by pack.method=import with pack.lower and pack.upper",
+               outside, n, first);
+}
+
 // What the model has and what it leaves out, for the provenance of the artifact.
 static void describe(const struct simulate_parameters *parameters,
                      const struct scene *scene, const char *model, char *text,
@@ -234,6 +261,8 @@ int main(int argc, char **argv)
     struct outcome outcome;
     run(&parameters, &scene, force, &invocation, &checkpoint.keeper, &outcome);
     if (!invocation.quiet) warn_of_servos(&scene, &outcome);
+    if (!invocation.quiet && parameters.write == WRITE_PACKING)
+        warn_of_grains_outside(&scene, &outcome);
     write(&parameters, &scene, &outcome, &invocation, inputs);
 
     checkpoint_end(&checkpoint);

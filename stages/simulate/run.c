@@ -347,7 +347,7 @@ static enum status begin(struct run *run, const struct vector *force, int thread
     struct scene *scene = run->scene;
     scene->setup.threads = threads;
     enum status status = dem_create(&run->outcome->dem, &scene->setup, reason);
-    if (status) return status;
+    if (status) return name_wall(scene, status, reason);
     status = check_speeds(run, reason);
     if (!status) status = check_servos(run, reason);
     if (status) return status;

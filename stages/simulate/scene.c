@@ -23,6 +23,7 @@
 #include "groups.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -357,6 +358,17 @@ enum status scene_init(const struct simulate_parameters *parameters,
     read_bonds(parameters, &scene->setup);
     set_engine(parameters, packing, scene);
     return check_strain(parameters, scene, reason);
+}
+
+// The engine numbers walls; users name them.
+enum status name_wall(const struct scene *scene, enum status status,
+                      struct reason *reason)
+{
+    const struct reason said = *reason;
+    int wall, end = 0;
+    if (sscanf(said.text, "wall %d: %n", &wall, &end) < 1 || end == 0) return status;
+    return refuse(reason, status, "simulate.walls.%s: %.400s",
+                  scene->wall_more[wall].name, said.text + end);
 }
 
 void scene_free(struct scene *scene)

@@ -50,6 +50,11 @@ enum status scene_init(const struct simulate_parameters *parameters,
                        struct scene *scene, struct reason *reason);
 void scene_free(struct scene *scene);
 
+// Names the wall that a REASON of the engine is about ("wall 3: ..."), as users know
+// it. Returns STATUS.
+enum status name_wall(const struct scene *scene, enum status status,
+                      struct reason *reason);
+
 static inline struct vector to_vector(const double x[3])
 {
     return (struct vector){x[0], x[1], x[2]};

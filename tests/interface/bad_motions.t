@@ -66,6 +66,9 @@ scene("a group without grains", {"groups": {"a": {"lower": [1, 1, 1]}}},
       r"simulate\.groups\.a: no grain has its centre there")
 scene("a grain that is not there", {"groups": {"a": {"grains": [1e6]}}},
       r"simulate\.groups\.a\.grains: there is no grain 1e\+06 among \d+")
+scene("a ring without a ring", {"box": {"walls": ["-z"]},
+                                "walls": {"ring": {"shape": "ring", "point": [0, 0, 0], "radius": 1, "inner_radius": 2}}},
+      r"packing: simulate\.walls\.ring: needs a radius > 0 and an inner one below it, got 1 and 2")
 scene("a wall through grains", {"walls": {"floor": {"point": [0, 0, 1e-6]}}},
       r"packing: simulate\.walls\.floor: grain \d+ begins in it, by \S+ of its radius, at \(.*\) m")
 scene("a box that is strained and does not repeat", {"box": {"strain_rate": [0, 0, 1]}},

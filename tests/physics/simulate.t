@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import subprocess
 import sys
 
 import h5py
@@ -270,6 +271,12 @@ run("simulate", "-q", "-p", at("still.json"), at("cell"), "-o", at("still"))
 for key in "porosity", "coordination", "max_overlap":
     near(h5py.File(at("still"))["summary"].attrs[key], h5py.File(at("cell"))["summary"].attrs[key], 1e-12,
          f"its {key} is that of pack, in a ring")
+
+out = subprocess.run([os.path.join(BIN, "simulate"), "-p", at("still.json"), "--set", "duration=0.01",
+                      packing([0, 0, 0, 1e-3], (-2e-3,) * 3, (2e-3, 2e-3, 4e-3)), "-o", at("out")], stderr=subprocess.PIPE)
+ok(out.returncode == 0 and not out.stderr, "nothing is said of a grain that stays in its box", out)
+out = subprocess.run([*out.args, "--set", "duration=0.1"], stderr=subprocess.PIPE)
+ok(b"1 of 1 grains, grain 0 the first, end outside" in out.stderr, "a grain that ends outside of it is reported", out)
 
 # --- a checkpoint of a step that was shortened ---------------------------------------------------------
 done()
