@@ -79,8 +79,9 @@ static double stiffness_for(const struct making *making)
         making->domain->dimensions == 2 ? edge.x * 2 * radius : edge.x * edge.y;
     const double weight =
         how->density * how->gravity * volume / area; // Pa on the floor
+    const double force = weight * 4 * radius * radius;
     const double own = how->density * how->gravity * 4 / 3 * M_PI * largest * largest;
-    return 2 * fmax(weight * 4 * radius, own) / how->overlap;
+    return 2 * fmax(force, own * radius) / (how->overlap * radius);
 }
 
 // The highest point of a grain becomes the top of the box.
