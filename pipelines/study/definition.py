@@ -293,6 +293,19 @@ def read_file(path):
     return said
 
 
+def check_counts(said, path, most):
+    """Numbers of values and seeds, made integers (JSON also writes 5.0); ends before lists of too many are made."""
+    seeds = said.get("seeds")
+    held = [(axis, "count", f"axes[{k}].count") for k, axis in enumerate(said.get("axes", []))]
+    held += [(seeds, "count", "seeds.count") if isinstance(seeds, dict) else (said, "seeds", "seeds")]
+    for holder, key, where in held:
+        if not isinstance(holder.get(key), (int, float)):
+            continue
+        holder[key] = int(holder[key])
+        if holder[key] > most:
+            refuse(65, f"{path}: {where}: {holder[key]} are more than {most} runs: fewer, or MOST_RUNS={holder[key]}")
+
+
 def count_first(said, axes, seeds, packings, path, most):
     """Ends where there are more runs than anyone means."""
     runs = math.prod(len(axis.values) for axis in axes) * len(seeds) * len(packings)
@@ -344,6 +357,7 @@ def axes_runs(said, path, replaced, scene, most):
 def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
     """The study of the file PATH; SEEDS, SCENE and SETS (pairs) take the place of its own."""
     said = read_file(path)
+    check_counts(said, path, most)
     said["set"] = {**said.get("set", {}), **dict(sets)}
     for key, value in said["set"].items():
         check_key(key, f"{path}: set")

@@ -233,6 +233,9 @@ values = list(range(1, 3201))
 refused("10^7 runs", 65, "10240000 runs (3200 seed x 3200 seed2 x 1 a point), more than 100000", "large.json",
         {"scene": "scene.json", "axes": [{"key": "dry.throat_radius.seed", "values": values},
                                          {"name": "seed2", "key": "dem-replay.bond.strength.seed", "values": values}]})
+refused("10^9 values of an axis", 65, "axes[0].count: 1000000000 are more than 100000 runs", "large.json",
+        {**small, "axes": [{"key": "dem-replay.friction", "from": 0.1, "to": 1, "count": 10**9}]})
+refused("10^9 seeds", 65, "seeds: 1000000000 are more than 100000 runs", "large.json", {**small, "seeds": 1e9})
 refused("a key that no stage has", 65, "wrong.json: axes[0]: dry.liqid: dry has no such parameter; 'liquid'?", "wrong.json",
         {**small, "axes": [{"key": "dry.liqid", "values": ["inviscid"]}]})
 refused("a stage that is none", 65, "no such stage; 'dem-replay'?", "wrong.json", {**small, "set": {"dem-reply.friction": 1}})
@@ -257,6 +260,7 @@ refused("an axis that is none", 65, "only[0].liqud: no such axis; 'liquid'?", "w
 lattice = {**scene, "dry": {**scene["dry"], "throat_radius": {"distribution": "network"}}}
 write("still.json", lattice)
 refused("seeds of a scene that draws nothing", 65, "the scene draws nothing", "wrong.json", {"scene": "still.json", "seeds": 2})
+refused("and of 2.0 seeds", 65, "the scene draws nothing", "wrong.json", {"scene": "still.json", "seeds": 2.0})
 refused("what is not JSON", 65, "is not JSON", "wrong.json", "{")
 ok(study("make", "nowhere.json", status=66)[0], "refused: a file that is not there")
 
