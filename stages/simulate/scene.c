@@ -364,11 +364,14 @@ enum status scene_init(const struct simulate_parameters *parameters,
 enum status name_wall(const struct scene *scene, enum status status,
                       struct reason *reason)
 {
+    static const char wall[] = "wall ";
     const struct reason said = *reason;
-    int wall, end = 0;
-    if (sscanf(said.text, "wall %d: %n", &wall, &end) < 1 || end == 0) return status;
-    return refuse(reason, status, "simulate.walls.%s: %.400s",
-                  scene->wall_more[wall].name, said.text + end);
+    if (strncmp(said.text, wall, sizeof wall - 1) != 0) return status;
+    char *end;
+    const long number = strtol(said.text + sizeof wall - 1, &end, 10);
+    if (*end != ':' || number < 0 || number >= scene->setup.n_wall) return status;
+    return refuse(reason, status, "simulate.walls.%s%.400s",
+                  scene->wall_more[number].name, end);
 }
 
 void scene_free(struct scene *scene)

@@ -197,7 +197,7 @@ static struct packing cloud(int edge, double spread, bool periodic)
     struct vector *shift = random_vectors(n, 0.2 * RADIUS, 3);
     uint64_t seed = 5;
     for (int i = 0; i < n; i++) {
-        const double at[3] = {i % edge, i / edge % edge, i / (edge * edge)};
+        const int at[3] = {i % edge, i / edge % edge, i / (edge * edge)};
         packing.position[i] =
             add(shift[i], (struct vector){(2.4 * at[0] + 1.3) * RADIUS,
                                           (2.4 * at[1] + 1.3) * RADIUS,
@@ -449,7 +449,7 @@ static void stirred_crowd(void **state)
     struct dem_setup setup = stiff_setup(&packing);
     uint8_t *of = NEW_ARRAY(uint8_t, packing.n_particle);
     for (int i = 0; i < packing.n_particle; i++)
-        of[i] = i % 12 < 2 ? (uint8_t)(1 + i % 12) : 0;
+        of[i] = (uint8_t)(i % 12 < 2 ? 1 + i % 12 : 0);
     setup.bond.normal_strength = setup.bond.shear_strength = 1e4;
     setup.n_wall = 1;
     setup.wall = &wall;
