@@ -227,6 +227,22 @@ static void run(const struct simulate_parameters *parameters, struct scene *scen
             reason.text);
 }
 
+static void simulate(const struct simulate_parameters *parameters, struct scene *scene,
+                     const struct vector *force, struct invocation *invocation,
+                     json_t *inputs)
+{
+    struct checkpoint checkpoint;
+    checkpoint_begin(&checkpoint, invocation, inputs);
+    struct outcome outcome;
+    run(parameters, scene, force, invocation, &checkpoint.keeper, &outcome);
+    if (!invocation->quiet) warn_of_servos(scene, &outcome);
+    if (!invocation->quiet && parameters->write == WRITE_PACKING)
+        warn_of_grains_outside(scene, &outcome);
+    write(parameters, scene, &outcome, invocation, inputs);
+    checkpoint_end(&checkpoint);
+    outcome_free(&outcome);
+}
+
 static void estimate(const struct simulate_parameters *parameters, struct scene *scene)
 {
     struct cost cost;
@@ -251,22 +267,11 @@ int main(int argc, char **argv)
     if (parameters.bond_kind == BOND_NONE) packing.n_bond = 0;
     struct scene scene;
     read_scene(&parameters, &packing, input, &scene);
-    if (invocation.estimates) {
+    if (invocation.estimates)
         estimate(&parameters, &scene);
-        return STATUS_OK;
-    }
+    else
+        simulate(&parameters, &scene, force, &invocation, inputs);
 
-    struct checkpoint checkpoint;
-    checkpoint_begin(&checkpoint, &invocation, inputs);
-    struct outcome outcome;
-    run(&parameters, &scene, force, &invocation, &checkpoint.keeper, &outcome);
-    if (!invocation.quiet) warn_of_servos(&scene, &outcome);
-    if (!invocation.quiet && parameters.write == WRITE_PACKING)
-        warn_of_grains_outside(&scene, &outcome);
-    write(&parameters, &scene, &outcome, &invocation, inputs);
-
-    checkpoint_end(&checkpoint);
-    outcome_free(&outcome);
     scene_free(&scene);
     free(force);
     json_decref(inputs);
