@@ -46,7 +46,7 @@ enum status foresee_run(const struct simulate_parameters *parameters,
     struct dem *dem;
     scene->setup.threads = 1;
     const enum status status = dem_create(&dem, &scene->setup, reason);
-    if (status) return name_wall(scene, status, reason);
+    if (status) return status;
     struct motion_size least = size_of(parameters, scene, dem), most = least;
     if (isnan(parameters->time_step)) most.steps *= SHORTER;
     struct motion_size expected = least;

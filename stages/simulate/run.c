@@ -282,11 +282,10 @@ static enum status check_speeds(struct run *run, struct reason *reason)
     for (int w = 0; w < scene->setup.n_wall; w++) {
         const double move = largest_speed(scene, w) * step / radius;
         if (move > LARGEST_MOVE)
-            return refuse(
-                reason, STATUS_BAD_DATA,
-                "simulate.walls.%s: moves by %.3g mean radii in a time step of "
-                "%.4g s, above %g: slower walls, or a smaller time step",
-                scene->wall_more[w].name, move, step, LARGEST_MOVE);
+            return refuse(reason, STATUS_BAD_DATA,
+                          "%s: moves by %.3g mean radii in a time step of "
+                          "%.4g s, above %g: slower walls, or a smaller time step",
+                          scene->wall_more[w].key, move, step, LARGEST_MOVE);
         while (run->look_every > LOOK_LEAST &&
                (double)run->look_every * move > LOOK_SHARE)
             run->look_every /= 2;
@@ -301,9 +300,9 @@ static enum status check_servos(const struct run *run, struct reason *reason)
         if (isnan(scene->wall_more[w].servo_pressure)) continue;
         if (servo_area(scene, dem_of(run), w) > 0) continue;
         return refuse(reason, STATUS_BAD_DATA,
-                      "simulate.walls.%s.servo.area: must be given: no planes or sides "
+                      "%s.servo.area: must be given: no planes or sides "
                       "of the box bound a rectangle across its normal",
-                      scene->wall_more[w].name);
+                      scene->wall_more[w].key);
     }
     return STATUS_OK;
 }
@@ -317,9 +316,9 @@ static enum status check_walls(const struct run *run, struct reason *reason)
         const int grain = dem_deepest_in_wall(dem_of(run), w, &overlap);
         if (overlap > run->parameters->largest_overlap)
             return refuse(reason, STATUS_BAD_DATA,
-                          "simulate.walls.%s: grain %d begins in it, by %.3g of its "
+                          "%s: grain %d begins in it, by %.3g of its "
                           "radius, at (%.4g, %.4g, %.4g) m",
-                          run->scene->wall_more[w].name, grain, overlap,
+                          run->scene->wall_more[w].key, grain, overlap,
                           run->scene->setup.packing->position[grain].x,
                           run->scene->setup.packing->position[grain].y,
                           run->scene->setup.packing->position[grain].z);
@@ -347,7 +346,7 @@ static enum status begin(struct run *run, const struct vector *force, int thread
     struct scene *scene = run->scene;
     scene->setup.threads = threads;
     enum status status = dem_create(&run->outcome->dem, &scene->setup, reason);
-    if (status) return name_wall(scene, status, reason);
+    if (status) return status;
     status = check_speeds(run, reason);
     if (!status) status = check_servos(run, reason);
     if (status) return status;

@@ -181,6 +181,16 @@ static enum status set_wall_material(const struct simulate_parameters *parameter
     return wall->material < 0 ? STATUS_BAD_DATA : STATUS_OK;
 }
 
+// The engine's next wall, which is set, has MORE too, and a name for messages.
+static void add_wall(struct scene *scene, struct scene_wall more)
+{
+    const int w = scene->setup.n_wall++;
+    scene->wall_more[w] = more;
+    char *key = scene->wall_more[w].key;
+    snprintf(key, sizeof more.key, "simulate.walls.%s", more.name);
+    scene->wall[w].name = key;
+}
+
 // The normal points into the box, where the grains are.
 static enum status add_box_walls(const struct simulate_parameters *parameters,
                                  const struct packing *packing, struct scene *scene,
@@ -201,8 +211,9 @@ static enum status add_box_walls(const struct simulate_parameters *parameters,
                                   .friction = given_or(parameters->box_friction, 0),
                                   .has_friction = !isnan(parameters->box_friction)};
         set_component(&wall->normal, side / 2, upper ? -1 : 1);
-        scene->wall_more[scene->setup.n_wall++] = (struct scene_wall){
-            .name = names[side], .servo_pressure = NAN, .servo_area = NAN};
+        add_wall(scene, (struct scene_wall){.name = names[side],
+                                            .servo_pressure = NAN,
+                                            .servo_area = NAN});
         const enum status status = set_wall_material(
             parameters, parameters->box_material, "box.material", wall, reason);
         if (status) return status;
@@ -242,16 +253,15 @@ static enum status read_walls(const struct simulate_parameters *parameters,
     for (int k = 0; k < parameters->walls.count && !status; k++) {
         const struct wall_parameters *row =
             (const struct wall_parameters *)parameters->walls.row + k;
-        const int w = scene->setup.n_wall++;
-        scene->wall[w] = make_wall(row);
-        scene->wall_more[w] = (struct scene_wall){.name = parameters->walls.name[k],
-                                                  .motion = &row->motion,
-                                                  .servo_pressure = row->servo_pressure,
-                                                  .servo_area = row->servo_area};
+        struct dem_wall *wall = &scene->wall[scene->setup.n_wall];
+        *wall = make_wall(row);
+        add_wall(scene, (struct scene_wall){.name = parameters->walls.name[k],
+                                            .motion = &row->motion,
+                                            .servo_pressure = row->servo_pressure,
+                                            .servo_area = row->servo_area});
         char key[300];
         snprintf(key, sizeof key, "walls.%s.material", parameters->walls.name[k]);
-        status =
-            set_wall_material(parameters, row->material, key, &scene->wall[w], reason);
+        status = set_wall_material(parameters, row->material, key, wall, reason);
     }
     scene->setup.wall = scene->wall;
     return status;
@@ -358,20 +368,6 @@ enum status scene_init(const struct simulate_parameters *parameters,
     read_bonds(parameters, &scene->setup);
     set_engine(parameters, packing, scene);
     return check_strain(parameters, scene, reason);
-}
-
-// The engine numbers walls; users name them.
-enum status name_wall(const struct scene *scene, enum status status,
-                      struct reason *reason)
-{
-    static const char wall[] = "wall ";
-    const struct reason said = *reason;
-    if (strncmp(said.text, wall, sizeof wall - 1) != 0) return status;
-    char *end;
-    const long number = strtol(said.text + sizeof wall - 1, &end, 10);
-    if (*end != ':' || number < 0 || number >= scene->setup.n_wall) return status;
-    return refuse(reason, status, "simulate.walls.%s%.400s",
-                  scene->wall_more[number].name, end);
 }
 
 void scene_free(struct scene *scene)

@@ -16,6 +16,7 @@
 // the values at the factor 1; `control` multiplies them.
 struct scene_wall {
     const char *name;                  // not owned
+    char key[200];                     // "simulate.walls.NAME"
     const struct time_table *motion;   // NULL: constant; of the parameters
     double servo_pressure, servo_area; // NAN: not given
 };
@@ -49,11 +50,6 @@ enum status scene_init(const struct simulate_parameters *parameters,
                        const struct packing *packing, const struct vector *velocity,
                        struct scene *scene, struct reason *reason);
 void scene_free(struct scene *scene);
-
-// Names the wall that a REASON of the engine is about ("wall 3: ..."), as users know
-// it. Returns STATUS.
-enum status name_wall(const struct scene *scene, enum status status,
-                      struct reason *reason);
 
 static inline struct vector to_vector(const double x[3])
 {

@@ -9,6 +9,7 @@
 #include "dem/engine.h"
 
 #include <math.h>
+#include <stdio.h>
 
 static bool is_finite_vector(struct vector a)
 {
@@ -205,6 +206,16 @@ static enum status check_numbers(const struct dem_setup *setup, struct reason *r
     return CHECK(step, reason);
 }
 
+struct wall_label wall_label(const struct dem_wall *wall, int w)
+{
+    struct wall_label label;
+    if (wall->name)
+        snprintf(label.text, sizeof label.text, "%s", wall->name);
+    else
+        snprintf(label.text, sizeof label.text, "wall %d", w);
+    return label;
+}
+
 // Sizes by shape: a plane has none, a block has edges, all others a radius. A servo
 // moves along the normal, so only a plane can have one.
 static enum status check_wall(const struct dem_setup *setup, int w,
@@ -213,37 +224,38 @@ static enum status check_wall(const struct dem_setup *setup, int w,
     const struct dem_wall *wall = &setup->wall[w];
     const enum dem_wall_shape shape = wall->shape;
     const struct vector edge = wall->half_edge;
+    const struct wall_label label = wall_label(wall, w);
     const bool round = shape != DEM_PLANE && shape != DEM_BLOCK;
     if (!is_finite_vector(wall->point) ||
         (has_direction(shape) &&
          !(is_finite_vector(wall->normal) && norm(wall->normal) > 0)))
         return refuse(reason, STATUS_BAD_DATA,
-                      "wall %d: needs a point and a normal that is not zero", w);
+                      "%s: needs a point and a normal that is not zero", label.text);
     if ((round && !(wall->radius > 0 && isfinite(wall->radius))) ||
         (shape == DEM_RING &&
          !(wall->inner_radius >= 0 && wall->inner_radius < wall->radius)))
-        return refuse(
-            reason, STATUS_BAD_DATA,
-            "wall %d: needs a radius > 0 and an inner one below it, got %g and "
-            "%g",
-            w, wall->radius, wall->inner_radius);
+        return refuse(reason, STATUS_BAD_DATA,
+                      "%s: needs a radius > 0 and an inner one below it, got %g and "
+                      "%g",
+                      label.text, wall->radius, wall->inner_radius);
     if (shape == DEM_BLOCK &&
         !(is_finite_vector(edge) && edge.x > 0 && edge.y > 0 && edge.z > 0))
-        return refuse(reason, STATUS_BAD_DATA, "wall %d: needs half edges > 0", w);
+        return refuse(reason, STATUS_BAD_DATA, "%s: needs half edges > 0", label.text);
     if (wall->material < 0 || wall->material > setup->n_other ||
         (wall->has_friction && !(wall->friction >= 0 && isfinite(wall->friction))))
         return refuse(reason, STATUS_BAD_DATA,
-                      "wall %d: no such material (%d) or friction (%g)", w,
+                      "%s: no such material (%d) or friction (%g)", label.text,
                       wall->material, wall->friction);
     if (!is_finite_vector(wall->velocity) || !is_finite_vector(wall->spin))
-        return refuse(reason, STATUS_BAD_DATA, "wall %d: its motion is not finite", w);
+        return refuse(reason, STATUS_BAD_DATA, "%s: its motion is not finite",
+                      label.text);
     if (wall->servo_force != 0 &&
         !(wall->servo_force > 0 && isfinite(wall->servo_force) && shape == DEM_PLANE &&
           wall->servo_largest_speed > 0 && isfinite(wall->servo_largest_speed)))
         return refuse(reason, STATUS_BAD_DATA,
-                      "wall %d: a servo moves a plane, by a force and a largest speed "
+                      "%s: a servo moves a plane, by a force and a largest speed "
                       "> 0, got %g and %g",
-                      w, wall->servo_force, wall->servo_largest_speed);
+                      label.text, wall->servo_force, wall->servo_largest_speed);
     return STATUS_OK;
 }
 

@@ -133,6 +133,7 @@ enum dem_wall_shape {
 // grains and are not pushed, but for servos. Grains may overlap several; each counts by
 // itself.
 struct dem_wall {
+    const char *name;     // for messages, static or of who calls; NULL: its number
     struct vector point;  // m
     struct vector normal; // any length but zero; not for spheres and blocks
     enum dem_wall_shape shape;

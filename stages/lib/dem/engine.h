@@ -608,6 +608,12 @@ static inline bool is_wall_bridged(const struct dem *dem, const struct wall_pair
     return walls_are_wet(dem) && pair->bridge_volume > 0;
 }
 
+// What messages call wall number W.
+struct wall_label {
+    char text[200];
+};
+struct wall_label wall_label(const struct dem_wall *wall, int w);
+
 // Whether the wall felt the grain at the last force.
 static inline bool acts_on_wall(const struct dem *dem, const struct wall_pair *pair)
 {

@@ -353,9 +353,9 @@ static enum status check_wet_walls(const struct dem *dem, struct reason *reason)
         const bool round = wall->shape == DEM_CYLINDER || wall->shape == DEM_SPHERE;
         if (!round || wall->outside || wall->radius > dem->largest_radius) continue;
         return refuse(reason, STATUS_BAD_DATA,
-                      "wall %d: wet walls must be wider than the largest grain, of "
+                      "%s: wet walls must be wider than the largest grain, of "
                       "%g m: its radius is %g m",
-                      w, dem->largest_radius * dem->unit.length,
+                      wall_label(wall, w).text, dem->largest_radius * dem->unit.length,
                       wall->radius * dem->unit.length);
     }
     return STATUS_OK;
