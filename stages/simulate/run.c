@@ -124,22 +124,20 @@ static void record_end(struct run *run)
     if (is_new(run, "/snapshots/time")) take_snapshot(run);
 }
 
-// Whether grains move though no force acts on any: the unbalanced ratio is 0 then.
-static bool flies(const struct dem *dem)
-{
-    return dem_unbalanced_ratio(dem) <= 0 && dem_energy(dem).kinetic > 0;
-}
-
 // Only at multiples of CONTROL_EVERY, since the ratio costs O(pairs); these cycles are
 // the same after a restart. Before the first cycle no force is known, and the ratio
-// would be 0.
+// would be 0. It is 0 too where no force acts on grains that fly: those are not at
+// rest.
 static bool is_at_rest(const struct run *run)
 {
     const struct dem *dem = dem_of(run);
-    return !isnan(run->parameters->stop_ratio) && dem_cycle(dem) > 0 &&
-           dem_cycle(dem) % CONTROL_EVERY == 0 &&
-           has_come(run, run->parameters->stop_after) &&
-           dem_unbalanced_ratio(dem) < run->parameters->stop_ratio && !flies(dem);
+    const bool is_asked = !isnan(run->parameters->stop_ratio) && dem_cycle(dem) > 0 &&
+                          dem_cycle(dem) % CONTROL_EVERY == 0 &&
+                          has_come(run, run->parameters->stop_after);
+    if (!is_asked) return false;
+    const double ratio = dem_unbalanced_ratio(dem);
+    if (!(ratio < run->parameters->stop_ratio)) return false;
+    return ratio > 0 || !(dem_energy(dem).kinetic > 0);
 }
 
 // ---- cycles -------------------------------------------------------------------------
