@@ -14,16 +14,6 @@
 
 static const double LOOSE = 2, SHORTER = 2;
 
-static bool turns(const struct dem_setup *setup)
-{
-    bool friction = setup->packing->n_bond > 0;
-    for (int k = 0; k <= setup->n_other; k++) {
-        const struct dem_material *is = k ? &setup->other[k - 1] : &setup->material;
-        friction = friction || is->friction > 0 || is->rolling_friction > 0;
-    }
-    return friction;
-}
-
 static struct motion_size size_of(const struct simulate_parameters *parameters,
                                   const struct scene *scene, const struct dem *dem)
 {
@@ -36,7 +26,7 @@ static struct motion_size size_of(const struct simulate_parameters *parameters,
         .steps = ceil(parameters->duration / dem_time_step(dem)),
         .snapshots = 1 + floor(fmax(0, recorded) / snapshot_interval(parameters)),
         .contacts = parameters->record_contacts ? fmax(LOOSE * n, contacts) : 0,
-        .turns = turns(&scene->setup),
+        .turns = dem_grains_turn(dem),
         .wet = scene->setup.liquid != NULL};
 }
 

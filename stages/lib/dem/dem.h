@@ -324,6 +324,9 @@ void dem_adapt_time_step(struct dem *dem, double share, bool now, double speed);
 // Whether it was set so.
 bool dem_step_is_adapted(const struct dem *dem);
 
+// Whether grains turn: friction, rolling resistance or bonds act on some.
+bool dem_grains_turn(const struct dem *dem);
+
 // Gives grains more inertia, from now on: of those that touch NOW, or of all near each
 // other, to each as much as it takes to need no shorter step than two grains alone need
 // that are as light as the lightest, over sqrt(CONTACTS) [relaxation.c]. What an

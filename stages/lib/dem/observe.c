@@ -30,6 +30,11 @@ double dem_time_step(const struct dem *dem)
     return dem->time_step * dem->unit.time;
 }
 
+bool dem_grains_turn(const struct dem *dem)
+{
+    return dem->features & FEATURE_ROTATION;
+}
+
 int dem_deepest_in_wall(const struct dem *dem, int wall, double *overlap)
 {
     int deepest = -1;
