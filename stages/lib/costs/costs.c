@@ -128,12 +128,11 @@ struct cost with_rings(struct cost drying, const struct body_size *body, bool fi
     const double by_events = 2.8e-7 * throats * throats;
     const double by_steps = 2.4e-6 * pow(throats, 1.45) * pow(0.01 / step, 0.45);
     const double flow = !films ? 0 : step > 0 ? fmin(by_steps, by_events) : by_events;
-    return (struct cost){.seconds = drying.seconds + rings + flow,
-                         .least = drying.least + rings + flow / 3,
-                         .most = drying.most + rings + 3 * flow,
-                         .mebibytes =
-                             drying.mebibytes + (films ? 4.5e-4 : 1.5e-4) * throats,
-                         .disk = drying.disk};
+    drying.seconds += rings + flow;
+    drying.least += rings + flow / 3;
+    drying.most += rings + 3 * flow;
+    drying.mebibytes += (films ? 4.5e-4 : 1.5e-4) * throats;
+    return drying;
 }
 
 // What the stages hold of forces over time: a band of rows.
@@ -218,10 +217,11 @@ struct cost cost_of_flow(double grains, int systems)
                   THROAT_BYTES * body_of_grains(grains).unmerged);
 }
 
-// From some 10^5 grains on the second grain of a pair is seldom in the caches.
+// From some 10^5 grains on the second grain of a pair is seldom in the caches. Bytes of
+// a snapshot are those of simulate's record; 200 rows of sums have some 300 each.
 struct cost cost_of_motion(const struct motion_size *motion)
 {
-    static const double cached = 2e5, sums = 200, engine = 3; // MiB
+    static const double cached = 2e5, sum_bytes = 200 * 300, engine = 3; // MiB
     const double n = motion->grains;
     const double far = 1 + 2 * n / (n + cached);
     const double grain_step =
@@ -231,5 +231,5 @@ struct cost cost_of_motion(const struct motion_size *motion)
     return writes(
         cost_of(grain_step * n * motion->steps,
                 engine + (motion->wet ? 0.002 : 0.0015) * n + snapshots / MEBIBYTE),
-        (GRAIN_BYTES + 20) * n + snapshots + sums * 300);
+        (GRAIN_BYTES + 20) * n + snapshots + sum_bytes);
 }
