@@ -201,7 +201,6 @@ struct drainage_history drainage_history_init(int n_time)
     return (struct drainage_history){.suction = NEW_ARRAY(double, n_time),
                                      .liquid = NEW_ARRAY(double, n_time),
                                      .drained = NEW_ARRAY(double, n_time),
-                                     .lateral_tension = NEW_ARRAY(double, n_time),
                                      .gas_pores = NEW_ARRAY(int32_t, n_time),
                                      .distorted = NEW_ARRAY(int32_t, n_time)};
 }
@@ -211,32 +210,44 @@ void drainage_history_free(struct drainage_history *history)
     free(history->suction);
     free(history->liquid);
     free(history->drained);
-    free(history->lateral_tension);
     free(history->gas_pores);
     free(history->distorted);
     *history = (struct drainage_history){0};
 }
 
+// The volume of liquid now; that of the pores that hold it, grains and all, goes to
+// WET.
+static double liquid_now(const struct drainage *drainage, const struct dem *dem,
+                         double *wet)
+{
+    struct vector *at = NEW_ARRAY(struct vector, drainage->n_particle);
+    double *radius = NEW_ARRAY(double, drainage->n_particle);
+    dem_positions(dem, at);
+    dem_radii(dem, radius);
+    const double liquid = liquid_volume(&drainage->liquid, at, radius, wet);
+    free(at);
+    free(radius);
+    return liquid;
+}
+
+double liquid_tension(const struct drainage *drainage, const struct dem *dem)
+{
+    const struct vector edge = drainage->liquid.edge;
+    double wet;
+    liquid_now(drainage, dem, &wet);
+    return suction_at(drainage, dem_cycle(dem)) * wet / (edge.x * edge.y * edge.z);
+}
+
 double note_drainage(const struct drainage *drainage, const struct dem *dem, int row,
                      struct drainage_history *history)
 {
-    struct vector *at = NEW_ARRAY(struct vector, drainage->n_particle);
-    double *radius = NEW_ARRAY(double, drainage->n_particle), wet;
-    dem_positions(dem, at);
-    dem_radii(dem, radius);
-    const double suction = suction_at(drainage, dem_cycle(dem));
-    const double liquid = liquid_volume(&drainage->liquid, at, radius, &wet);
-    const struct vector edge = drainage->liquid.edge;
-    const struct dem_census census = dem_census(dem);
+    double wet;
+    const double liquid = liquid_now(drainage, dem, &wet);
     history->first_liquid = drainage->begin;
-    history->suction[row] = suction;
+    history->suction[row] = suction_at(drainage, dem_cycle(dem));
     history->liquid[row] = liquid;
     history->drained[row] = drainage->drained;
-    history->lateral_tension[row] = suction * wet / (edge.x * edge.y * edge.z) -
-                                    (census.stress[0][0] + census.stress[1][1]) / 2;
     history->gas_pores[row] = drainage->n_gas;
     history->distorted[row] = drainage->n_distorted;
-    free(at);
-    free(radius);
     return fmin(fmax(liquid / drainage->begin, 0), 1);
 }

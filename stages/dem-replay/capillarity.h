@@ -36,12 +36,10 @@ struct capillarity {
 
 // What each row of the load ends with; it owns its arrays (n_time).
 struct drainage_history {
-    double first_liquid;     // m3, before the first row
-    double *suction;         // Pa
-    double *liquid;          // m3 in pores
-    double *drained;         // m3 that pores held when gas entered them, so far
-    double *lateral_tension; // Pa, mean of x and y: of grains and liquid together, over
-                             // the box
+    double first_liquid;            // m3, before the first row
+    double *suction;                // Pa
+    double *liquid;                 // m3 in pores
+    double *drained;                // m3 that pores held when gas entered them, so far
     int32_t *gas_pores, *distorted; // pores with gas; of them, by mark_distorted
 };
 
@@ -96,5 +94,8 @@ bool has_evaporated(const struct drainage *drainage);
 // Notes the state in ROW of HISTORY; returns the saturation, in [0,1].
 double note_drainage(const struct drainage *drainage, const struct dem *dem, int row,
                      struct drainage_history *history);
+
+// The lateral tension of the liquid now, Pa over the volume of the box.
+double liquid_tension(const struct drainage *drainage, const struct dem *dem);
 
 #endif

@@ -4,7 +4,7 @@
 //     drainage_volume (4)      drained and target, m3; suctions it changes between, Pa
 //     drainage_cycle (4)       since, until, round_began, entered
 //     drainage_count (2)       pores with gas, and distorted ones
-//     drainage_history (4, t)  suction, liquid, drained, lateral_tension
+//     drainage_history (3, t)  suction, liquid, drained
 //     drainage_pores (2, t)    gas_pores, distorted
 //     load_saturation (t), load_dryness (t, n; empty where nothing shrinks)
 // What a pore held at first is found again from the packing.
@@ -17,7 +17,7 @@
 
 static const double LARGEST = 1e150, MOST_CYCLES = 0x1p53;
 
-enum { N_NUMBER = 4, N_COUNT = 2 };
+enum { N_NUMBER = 3, N_COUNT = 2 };
 
 static void columns_of(struct drainage_history *history, double *number[N_NUMBER],
                        int32_t *count[N_COUNT])
@@ -25,7 +25,6 @@ static void columns_of(struct drainage_history *history, double *number[N_NUMBER
     number[0] = history->suction;
     number[1] = history->liquid;
     number[2] = history->drained;
-    number[3] = history->lateral_tension;
     count[0] = history->gas_pores;
     count[1] = history->distorted;
 }

@@ -143,6 +143,8 @@ static void note_step(struct run *run)
     response->settled[step] = run->engine->is_settled(run);
     response->loaded[step] = is_loaded(run->load, run->packing->n_particle, step);
     response->reaction[step] = reaction(run);
+    if (response->lateral_tension)
+        response->lateral_tension[step] = run->engine->lateral_tension(run);
     note_cracks(run);
 }
 
@@ -215,6 +217,8 @@ enum status replay(const struct packing *packing, const struct load *load,
         .weight_unbalanced_ratio = NAN,
         .snapshot = NEW_ARRAY(struct snapshot, settings->n_snapshot + 1)};
     if (load->drains) response->drainage = drainage_history_init(load->n_time);
+    if (load->drains || load->shrinks)
+        response->lateral_tension = NEW_ARRAY(double, load->n_time);
     struct run run = {.packing = packing,
                       .load = load,
                       .settings = settings,
@@ -257,6 +261,7 @@ void response_free(struct response *response)
     free(response->settled);
     free(response->loaded);
     free(response->reaction);
+    free(response->lateral_tension);
     free(response->weight_crack);
     drainage_history_free(&response->drainage);
     free_arrays(response->engine.array, response->engine.count);

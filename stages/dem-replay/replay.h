@@ -124,6 +124,9 @@ struct response {
     int32_t *cracks;          // (n_time) so far
     uint8_t *settled; // (n_time) 1: all came to rest under it; without a load always
     uint8_t *loaded;  // (n_time) whether there is one (is_loaded)
+    double *lateral_tension;   // (n_time) Pa, mean of x and y: of grains, and of liquid
+                               // that drains, over the box; NULL: neither shrinks nor
+                               // drains
     struct net_load *reaction; // (n_time) of supports on the grains, or in place of
                                // them: what was taken off, the other way
     int n_snapshot;

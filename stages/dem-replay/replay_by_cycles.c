@@ -537,6 +537,15 @@ static struct net_load reaction(const struct run *run)
                            run->settings->support == SUPPORT_WALL);
 }
 
+// The engine's stress has compression above 0.
+static double lateral_tension(const struct run *run)
+{
+    const struct dem_census census = dem_census(dem_of(run));
+    const double grains = -(census.stress[0][0] + census.stress[1][1]) / 2;
+    if (!run->load->drains) return grains;
+    return grains + liquid_tension(drainage_of(run), dem_of(run));
+}
+
 static const struct dem_crack *cracks(const struct run *run, int *count)
 {
     return dem_cracks(dem_of(run), count);
@@ -595,6 +604,7 @@ const struct replay_engine replay_by_cycles = {
     .cycles = cycles,
     .unbalanced_ratio = unbalanced_ratio,
     .is_settled = is_settled,
+    .lateral_tension = lateral_tension,
     .reaction = reaction,
     .cracks = cracks,
     .observe = observe,

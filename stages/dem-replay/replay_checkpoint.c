@@ -12,6 +12,7 @@
 //     step, step_began (1)               the row on the way, its first cycle
 //     unbalanced_ratio, cycles, cracks,
 //     settled (t), reaction (t, 6)       all rows; those to come still 0
+//     lateral_tension (t)                only where grains shrink or pores drain
 //     crack_step (cracks of this replay) the cracks themselves are the engine's
 //     weight_cracks (1), weight_unbalanced_ratio (1, or 0: NAN)
 //     snapshot_step (s), _displacement and _force (s, n, 3), _intact (s, b)
@@ -158,6 +159,9 @@ struct array_list save_response(const struct response *response,
     add_array(&list, "settled", ARRAY_UINT8, n_time, response->settled);
     add_array(&list, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time,
               response->reaction);
+    if (response->lateral_tension)
+        add_array(&list, "lateral_tension", ARRAY_FLOAT64, n_time,
+                  response->lateral_tension);
     add_array(&list, "crack_step", ARRAY_INT32, response->n_crack,
               response->crack_step);
     add_array(&list, "weight_cracks", ARRAY_INT32, 1,
@@ -266,6 +270,10 @@ static enum status restore_history(struct response *response, int first_step,
     const uint8_t *settled = read_array(reader, "settled", ARRAY_UINT8, n_time, 0, 1);
     const struct net_load *reaction = read_array(
         reader, "reaction", ARRAY_FLOAT64, 6 * (int64_t)n_time, -LARGEST, LARGEST);
+    const double *tension = response->lateral_tension
+                                ? read_array(reader, "lateral_tension", ARRAY_FLOAT64,
+                                             n_time, -LARGEST, LARGEST)
+                                : NULL;
     if (reader->failed) return STATUS_BAD_DATA;
     const size_t n = (size_t)n_time;
     *place = (struct replay_place){(int)*step, *began};
@@ -274,6 +282,7 @@ static enum status restore_history(struct response *response, int first_step,
     memcpy(response->cracks, cracks, n * sizeof *cracks);
     memcpy(response->settled, settled, n * sizeof *settled);
     memcpy(response->reaction, reaction, n * sizeof *reaction);
+    if (tension) memcpy(response->lateral_tension, tension, n * sizeof *tension);
     return STATUS_OK;
 }
 

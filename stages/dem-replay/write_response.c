@@ -9,7 +9,8 @@
 //     packing, /bonds/relative_strength (b), /particles/held (n)
 //     /cracks     bond, time, saturation, mode, position (n_crack)
 //     /history    time, saturation, unbalanced_ratio, cycles, cracks, settled,
-//                 reaction_force, reaction_moment (k)
+//                 reaction_force, reaction_moment (k); lateral_tension (k)
+//                 where grains shrink or pores drain
 //     /contacts   particles (c, 2): bonded at the start, or in contact at a snapshot
 //     /snapshots  time, saturation (s); displacement, force (s, n); bond_intact (s, b);
 //                 contact_force (s, c); with bridges bridge_volume, _force, _gap (s, c)
@@ -61,6 +62,9 @@ static void put_history(struct artifact *artifact, const struct load *load,
     artifact_put(artifact, "/history/cycles", response->cycles, load->n_time);
     artifact_put(artifact, "/history/cracks", response->cracks, load->n_time);
     artifact_put(artifact, "/history/settled", response->settled, load->n_time);
+    if (response->lateral_tension)
+        artifact_put(artifact, "/history/lateral_tension", response->lateral_tension,
+                     load->n_time);
     struct vector *force = NEW_ARRAY(struct vector, load->n_time);
     struct vector *moment = NEW_ARRAY(struct vector, load->n_time);
     for (int k = 0; k < load->n_time; k++) {
@@ -81,7 +85,6 @@ static void put_drainage(struct artifact *artifact, const struct load *load,
     artifact_put(artifact, "/history/suction", drainage->suction, n);
     artifact_put(artifact, "/history/liquid_volume", drainage->liquid, n);
     artifact_put(artifact, "/history/drained_volume", drainage->drained, n);
-    artifact_put(artifact, "/history/lateral_tension", drainage->lateral_tension, n);
     artifact_put(artifact, "/history/gas_pores", drainage->gas_pores, n);
     artifact_put(artifact, "/history/distorted_pores", drainage->distorted, n);
 }

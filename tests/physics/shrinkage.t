@@ -75,6 +75,10 @@ with scratch() as folder:
     layer = np.rint(place[:, 2] / RADIUS - 1) / 2
     sunk = np.where(layer > 0, (2 * layer - 1) * RADIUS * STRAIN, 0)
     ok(near(-moved[:, 2], sunk, 1e-5), "the layer sinks by its free shrinkage")
+    box = file["domain/upper"][:] - file["domain/lower"][:]
+    all_bonds = full * 2 * RADIUS * SIDE * SIDE * (SIDE - 1) / box.prod()
+    ok(near(file["history/lateral_tension"][:], np.arange(1, 5) / 4 * all_bonds, 1e-5),
+       "the lateral tension is that of these bonds, over the box")
     ok(file["history/settled"][:].all(), "steps without forces come to rest as well")
 
     file = replay(at("front.h5"), at, "-s", "shrinkage.law=front")

@@ -2,10 +2,9 @@
 # A layer that shrinks as it dries and parts into polygons:
 #
 #     make craquelure                          ->  build/runs/craquelure-40/polygons.png, drying.png,
-#                                                  film.gif, table.md
+#                                                  film.gif, tension.png, table.md
 #     make craquelure CRAQUELURE_SEEDS="1 2 3" ->  the same of the first, the table over all packings
-#     make craquelure SCENE=samples/x.json     ->  the same for another scene; with liquid in its pores
-#                                                  (dem-replay.capillary) tension.png as well
+#     make craquelure SCENE=samples/x.json     ->  the same for another scene
 #     make craquelure SET="pack.upper=..." NAME=wide ->  with other values, in build/runs/wide
 
 CRAQUELURE_SEEDS ?=# of the packing [that of the scene]
@@ -33,12 +32,7 @@ $(call report,$(craquelure)/polygons.png,studies/craquelure/report,$(craquelure_
 $(call report,$(craquelure)/drying.png,studies/craquelure/report,$(craquelure_files),drying $(craquelure_files))
 $(call report,$(craquelure)/film.gif,studies/craquelure/report,$(craquelure_files),film $(craquelure_files))
 $(call report,$(craquelure)/table.md,studies/craquelure/report,$(craquelure_files),table $(craquelure_files))
-
-craquelure_pictures := polygons.png drying.png film.gif
-ifneq ($(shell jq '."dem-replay".capillary.suction // empty' $(craquelure_scene)),)
 $(call report,$(craquelure)/tension.png,studies/craquelure/report,$(craquelure_files),tension $(craquelure_files))
-craquelure_pictures += tension.png
-endif
 
-$(call study,craquelure,$(craquelure)/table.md $(craquelure_pictures:%=$(craquelure)/%))
+$(call study,craquelure,$(addprefix $(craquelure)/,table.md polygons.png drying.png film.gif tension.png))
 endif
