@@ -82,13 +82,13 @@ close(wide["separations/volume"][1] / band, 1, 0.1, "volume inside the band")
 # The pictures and the table of these.
 STUDY = os.path.join("pipelines", "studies", "shear")
 for what in ["bands", "profiles", "rheology", "torque", "separations"]:
-    words = ["unger=0.15,0.06"] if what == "bands" else []
+    words = ["unger=0.15"] if what == "bands" else []
     drawn = subprocess.run([f"{STUDY}/figure", what, f"four runs={at('cell')}", *words, at("figure.svg")],
                            stderr=subprocess.PIPE, text=True)
     picture = open(at("figure.svg")).read() if drawn.returncode == 0 else ""
     said = "height" if what == "profiles" else "four runs"
     ok(not drawn.stderr and "</svg>" in picture and said in picture, f"the picture of {what}", drawn.stderr)
-subprocess.run([f"{STUDY}/table", f"four runs={at('cell')}", "unger=0.15,0.06", at("table.md")], check=True)
+subprocess.run([f"{STUDY}/table", f"four runs={at('cell')}", "unger=0.15", at("table.md")], check=True)
 table = open(at("table.md")).read()
 ok(f"| four runs | 4 | {f['friction']:.4f} ± {f['friction_half_width']:.4f} |" in table, "friction in the table",
    table)

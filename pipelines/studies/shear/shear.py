@@ -11,17 +11,17 @@ from common import artifact, refuse, titled
 
 
 def cases(words, needs=None):
-    """The artifacts of the words TITLE=FILE, by title, and (split radius, depth) in metres of a word
-    unger=RADIUS,DEPTH, or None. NEEDS is a dataset that each must have."""
+    """The artifacts of the words TITLE=FILE, by title, and the split radius in metres of a word
+    unger=SPLIT_RADIUS, or None. NEEDS is a dataset that each must have."""
     found, unger = {}, None
     for word in words:
         title, path = titled(word)
         if title == "unger":
             try:
-                unger = tuple(float(x) for x in path.split(","))
-                assert len(unger) == 2 and 0 < unger[1] < unger[0]
+                unger = float(path)
+                assert unger > 0
             except (ValueError, AssertionError):
-                refuse(64, f"{word}: must be unger=SPLIT_RADIUS,DEPTH with a depth below the radius")
+                refuse(64, f"{word}: must be unger=SPLIT_RADIUS, in metres")
             continue
         file = artifact(path, "shearstats")
         if needs and needs not in file:
@@ -32,16 +32,32 @@ def cases(words, needs=None):
     return found, unger
 
 
+def depth_of(file):
+    """Where the volume fraction falls to half its median, in the middle of the ring; walls are glued."""
+    centre, volume = file["grid/centre"][:], file["grid/volume"][:]
+    filled = volume * file["fields/volume_fraction"][:]
+    inner, outer = np.quantile(centre[:, 0], (0.2, 0.8))
+    heights = np.unique(centre[:, 2])
+    share = np.array([filled[there].sum() / volume[there].sum() for z in heights
+                      for there in [(centre[:, 2] == z) & (centre[:, 0] > inner) & (centre[:, 0] < outer)]])
+    half = 0.5 * np.median(share[share > 0.5 * share.max()])
+    k = np.flatnonzero(share > half)[-1]
+    return np.interp(half, share[[k + 1, k]], heights[[k + 1, k]])
+
+
 def unger_centre(height, split, depth):
     """Where the band's centre r is at HEIGHT, by bisection of
-    depth - height = r (1 - split/r (1 - (depth/split)^(5/2)))^(2/5)."""
+    depth - height = r (1 - split/r (1 - (depth/split)^(5/2)))^(2/5).
+    NaN above the bed, and where it is so deep that the band does not reach its top."""
+    if not depth < split:
+        return np.full_like(height, np.nan)
     top = split * (1 - (depth / split) ** 2.5)
     lower, upper = np.full_like(height, top), np.full_like(height, split)
     for _ in range(60):
         r = 0.5 * (lower + upper)
         above = r * np.maximum(1 - top / r, 0) ** 0.4 > depth - height  # too far out
         lower, upper = np.where(above, lower, r), np.where(above, r, upper)
-    return 0.5 * (lower + upper)
+    return np.where(height <= depth, 0.5 * (lower + upper), np.nan)
 
 
 def levels(file):

@@ -16,7 +16,8 @@ SHEAR_SCENE ?= samples/split-bottom.json
 SHEAR_SEEDS ?= 1# packings
 SHEAR_MODELS ?= table weigert willett-full willett-reduced rabinovich-lambert
 SHEAR_VOLUMES ?= 13.6e-12 74.2e-12# m3, of each bridge
-SHEAR_UNGER ?= 93.8e-3,38.6e-3# m, radius of the split and height of the bed, for the curve of Unger et al.
+# Radius of the split in m, for the curve of Unger et al.; none if the scene has no outer-floor.
+SHEAR_SPLIT = $(shell jq '.simulate.groups["outer-floor"].ring.inner // empty' $(SHEAR_SCENE))
 
 shear_folder := $(RUNS)/shear
 
@@ -40,7 +41,7 @@ shear_arms = dry $(foreach v,$(SHEAR_VOLUMES),$(foreach m,$(SHEAR_MODELS),$m-$v)
 # The statistics of arm $1 over all packings.
 shear_statistics = $(call shearstats,$(shear_folder)/$1.h5,$(SHEAR_SCENE),,$(foreach seed,$(SHEAR_SEEDS),$(shear_folder)/$(seed)/$1.h5))
 # A picture of kind $1 of the arms $2.
-shear_picture = $(call artifact,$(shear_folder)/$1.svg,stage=studies/shear version=1,$(shear_programs) $(2:%=$(shear_folder)/%.h5),pipelines/studies/shear/figure $1 $(foreach arm,$2,$(arm)=$(shear_folder)/$(arm).h5) $(if $(filter bands,$1),unger=$(SHEAR_UNGER)) $(shear_folder)/$1.svg)
+shear_picture = $(call artifact,$(shear_folder)/$1.svg,stage=studies/shear version=1,$(shear_programs) $(2:%=$(shear_folder)/%.h5),pipelines/studies/shear/figure $1 $(foreach arm,$2,$(arm)=$(shear_folder)/$(arm).h5) $(if $(filter bands,$1),$(SHEAR_SPLIT:%=unger=%)) $(shear_folder)/$1.svg)
 
 shear: ## wet shear flow in a split-bottom cell, by five models of bridges (an hour of one core)
 
@@ -53,7 +54,7 @@ $(foreach arm,$(shear_names),$(call shear_statistics,$(arm)))
 shear_drawn := $(filter dry table-%,$(shear_names))
 shear_pictures := bands profiles rheology torque separations
 $(foreach kind,$(shear_pictures),$(call shear_picture,$(kind),$(if $(filter torque,$(kind)),$(shear_names),$(shear_drawn))))
-$(call artifact,$(shear_folder)/shear.md,stage=studies/shear version=1,$(shear_programs) $(shear_names:%=$(shear_folder)/%.h5),pipelines/studies/shear/table $(foreach arm,$(shear_names),$(arm)=$(shear_folder)/$(arm).h5) unger=$(SHEAR_UNGER) $(shear_folder)/shear.md)
+$(call artifact,$(shear_folder)/shear.md,stage=studies/shear version=1,$(shear_programs) $(shear_names:%=$(shear_folder)/%.h5),pipelines/studies/shear/table $(foreach arm,$(shear_names),$(arm)=$(shear_folder)/$(arm).h5) $(SHEAR_SPLIT:%=unger=%) $(shear_folder)/shear.md)
 $(call study,shear,$(shear_folder)/shear.md $(shear_pictures:%=$(shear_folder)/%.svg))
 endif
 
@@ -61,7 +62,6 @@ endif
 
 SHEAR_BEADS ?= 9500 12500 16500 21000 27000# in the cell, from shallow to deep
 SHEAR_DRAWS ?= 1 2 3# packings of each
-SHEAR_SPLIT ?= 93.8e-3# m, radius
 
 shear_depth := $(RUNS)/shear-depth
 # A loose packing that has room for the deepest.
