@@ -139,9 +139,24 @@ def read_axis(axis, where):
     return Axis(name, values, sets, axis.get("title", name), axis.get("unit", ""), axis.get("scale") == "log")
 
 
+def as_list(wanted):
+    return wanted if isinstance(wanted, list) else [wanted]
+
+
 def fits(values, choice):
     """Whether the VALUES of a point are among those of a CHOICE."""
-    return all(values.get(name) in (wanted if isinstance(wanted, list) else [wanted]) for name, wanted in choice.items())
+    return all(values.get(name) in as_list(wanted) for name, wanted in choice.items())
+
+
+def chosen(choice, axes):
+    """The places on each axis of the values that CHOICE names; all of an axis that it does not name."""
+    return [[k for k, value in enumerate(axis.values) if axis.name not in choice or value in as_list(choice[axis.name])]
+            for axis in axes]
+
+
+def choices(said, axes):
+    """The places on each axis, for each choice that SAID makes: all values, if it makes none."""
+    return [chosen(choice, axes) for choice in said.get("only", [{}])]
 
 
 def check_choice(choice, axes, where):
@@ -149,21 +164,16 @@ def check_choice(choice, axes, where):
         axis = next((a for a in axes if a.name == name), None)
         if not axis:
             refuse(65, f"{where}.{name}: no such axis{nearest(name, [a.name for a in axes])}")
-        for value in wanted if isinstance(wanted, list) else [wanted]:
+        for value in as_list(wanted):
             if value not in axis.values:
                 refuse(65, f"{where}.{name}: {label_of(value)} is no value of that axis")
 
 
-def crossed(said, axes, path):
+def crossed(said, axes):
     """The points: values by axis, and what they set."""
-    for k, choice in enumerate(said.get("only", [])):
-        check_choice(choice, axes, f"{path}: only[{k}]")
     points = []
-    for places in itertools.product(*(range(len(axis.values)) for axis in axes)):
-        values = {axis.name: axis.values[k] for axis, k in zip(axes, places)}
-        if "only" in said and not any(fits(values, choice) for choice in said["only"]):
-            continue
-        sets = {}
+    for places in sorted({places for choice in choices(said, axes) for places in itertools.product(*choice)}):
+        values, sets = {axis.name: axis.values[k] for axis, k in zip(axes, places)}, {}
         for axis, k in zip(axes, places):
             sets.update(axis.sets[k])
         points.append((values, sets))
@@ -308,9 +318,12 @@ def check_counts(said, path, most):
 
 def count_first(said, axes, seeds, packings, path, most):
     """Ends where there are more runs than anyone means."""
-    runs = math.prod(len(axis.values) for axis in axes) * len(seeds) * len(packings)
-    if "only" not in said and runs > most:
-        shape = " x ".join([f"{len(axis.values)} {axis.name}" for axis in axes] + [f"{len(seeds) * len(packings)} a point"])
+    for k, choice in enumerate(said.get("only", [])):
+        check_choice(choice, axes, f"{path}: only[{k}]")
+    each = len(seeds) * len(packings)
+    runs = sum(math.prod(map(len, places)) for places in choices(said, axes)) * each
+    if runs > most:
+        shape = "by only" if "only" in said else " x ".join([f"{len(axis.values)} {axis.name}" for axis in axes] + [f"{each} a point"])
         refuse(65, f"{path}: {runs} runs ({shape}), more than {most}: fewer values, or MOST_RUNS={runs}")
 
 
@@ -342,7 +355,7 @@ def axes_runs(said, path, replaced, scene, most):
     seeds, keys = seeds_of(said, replaced, path)
     packings = [located(each, path) for each in said.get("packings", [])] or [said.get("import") and located(said["import"], path)]
     count_first(said, axes, seeds, packings, path, most)
-    points, runs = crossed(said, axes, path), []
+    points, runs = crossed(said, axes), []
     for number, (values, sets) in enumerate(points):
         sets = {**said.get("set", {}), **sets}
         of_point = sets.pop("scene", scene) or refuse(65, f"{path}: has no scene")

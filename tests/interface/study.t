@@ -233,6 +233,15 @@ values = list(range(1, 3201))
 refused("10^7 runs", 65, "10240000 runs (3200 seed x 3200 seed2 x 1 a point), more than 100000", "large.json",
         {"scene": "scene.json", "axes": [{"key": "dry.throat_radius.seed", "values": values},
                                          {"name": "seed2", "key": "dem-replay.bond.strength.seed", "values": values}]})
+# Of 10^9 combinations, which would take hours to go through, `only` names two.
+wide = {"scene": "scene.json",
+        "axes": [{"name": f"axis{k}", "key": key, "from": 0.1, "to": 1, "count": 1000}
+                 for k, key in enumerate(["dem-replay.friction", "dem-replay.damping_ratio", "dem-replay.normal_stiffness"])]}
+write("wide.json", {**wide, "only": [{"axis0": [0.1, 1], "axis1": 1, "axis2": 0.1}]})
+fine, _, said, _ = study("plan", "wide.json")
+ok(fine and "wide: 2 runs" in said, "two of 10^9 combinations", said)
+refused("10^6 chosen runs", 65, "1000000 runs (by only), more than 100000", "large.json",
+        {**wide, "only": [{"axis0": 1}]})
 refused("10^9 values of an axis", 65, "axes[0].count: 1000000000 are more than 100000 runs", "large.json",
         {**small, "axes": [{"key": "dem-replay.friction", "from": 0.1, "to": 1, "count": 10**9}]})
 refused("10^9 seeds", 65, "seeds: 1000000000 are more than 100000 runs", "large.json", {**small, "seeds": 1e9})
