@@ -277,6 +277,4 @@ out = subprocess.run([os.path.join(BIN, "simulate"), "-p", at("still.json"), "--
 ok(out.returncode == 0 and not out.stderr, "nothing is said of a grain that stays in its box", out)
 out = subprocess.run([*out.args, "--set", "duration=0.1"], stderr=subprocess.PIPE)
 ok(b"1 of 1 grains, grain 0 the first, end outside" in out.stderr, "a grain that ends outside of it is reported", out)
-
-# --- a checkpoint of a step that was shortened ---------------------------------------------------------
 done()
