@@ -282,12 +282,16 @@ static void shrink_to(struct run *run, double share)
         free(strain[k]);
 }
 
-// Evenly over the cycles of the step, after the ramp.
+// Evenly over the cycles of the step, after the ramp: by now to what is due when the
+// load is adapted next, so that the grains have felt all of it in the cycles of the
+// step.
 static void shrink(struct run *run)
 {
     const int64_t done = dem_cycle(dem_of(run)) - run->place.began - ramp(run);
-    if (done < 0 || done > run->settings->cycles) return;
-    shrink_to(run, (double)done / (double)run->settings->cycles);
+    if (done < 0 || done >= run->settings->cycles) return;
+    const int64_t since = dem_cycle(dem_of(run)) - run->place.began;
+    const int64_t next = done + load_holds(run) - since % load_holds(run);
+    shrink_to(run, fmin(1, (double)next / (double)run->settings->cycles));
 }
 
 // Applies the forces of the step to the grains where they are now.
@@ -515,9 +519,8 @@ static enum status advance(struct run *run, struct reason *reason)
         status = run_cycles(run, 1, reason);
     }
     const int64_t left = full + run->settings->cycles - dem_cycle(dem_of(run));
+    if (!status && left == run->settings->cycles) shrink(run);
     if (!status) status = run_cycles(run, left, reason);
-    if (!status && dem_cycle(dem_of(run)) == full + run->settings->cycles)
-        shrink_to(run, 1);
     if (status || !run->load->drains) return status ? status : run_on(run, reason);
     status = drain(run, reason);
     if (!status) note_row(run);

@@ -109,6 +109,21 @@ with scratch() as folder:
     ok(all((strength[held == k] == (4 if k == 1 else 1)).all() for k in range(3)),
        "bonds to the substrate have a strength of their own")
 
+    # A grain between two that are held, and two of them: no net force ever moves the
+    # first, so that no cycle more than asked for follows the last of the strain.
+    for count, settings in (3, ["tolerance=1e-3"]), (3, ["tolerance=null"]), (4, ["tolerance=1e-3"]):
+        with open(at("bar.txt"), "w") as file:
+            file.writelines(f"{2 * RADIUS * k} 0 0 {RADIUS}\n" for k in range(count))
+        run("pack", "-q", "-s", "method=import", "-s", "check=none", at("bar.txt"), "-o", at("bar.h5"))
+        for steps, cycles, ramp in (1, 64, 0), (1, 20, 0), (4, 100, 0), (3, 40, 7):
+            bar = [f"shrinkage.steps={steps}", f"cycles={cycles}", f"ramp={ramp}", *settings, "held.walls=[]",
+                   f"held.grains=[0,{count - 1}]", "engine=explicit", "snapshots=[0]"]
+            run("dem-replay", "-q", "-p", at("layer.json"), *(word for setting in bar for word in ("-s", setting)),
+                at("bar.h5"), "-o", at("barred.h5"))
+            force = np.linalg.norm(h5py.File(at("barred.h5"))["snapshots/contact_force"][0], axis=1)
+            ok(near(force, full * (count - 2) / (count - 1), 2e-3),
+               f"a bar of {count} grains feels all strain: {steps} steps of {cycles} cycles, {settings[0]}", force / full)
+
     # Scattered strengths, so that it cracks here and there.
     cracking = ["dem-replay", "-q", "-p", at("layer.json"), "-s",
                 "bond.strength.distribution=normal", "-s", "bond.normal_strength=2e5",
