@@ -21,7 +21,7 @@ struct source {
     double largest;            // N, of these
     struct row_reader *liquid; // NULL: it is not looked at
     const double *saturation;  // (n_time)
-    double *most;              // (n) kg
+    double *most;              // (n) kg, .most_liquid of the load
     double *dryness[2];        // (n) of the rows
     int dry[2];                // below; -1: none
 };
@@ -119,6 +119,7 @@ static void begin_dryness(const struct artifact *input, struct load *load)
         source->dryness[k] = NEW_ARRAY(double, n);
         source->dry[k] = -1;
     }
+    load->most_liquid = source->most;
     load->dryness = dryness_row;
 }
 

@@ -53,6 +53,8 @@ struct load {
     // (n_particle) of each grain, also of the row before the last one asked for; NULL:
     // not known, or .drained.
     const double *(*dryness)(void *source, int row);
+    double *most_liquid; // (n_particle) kg, that each grain ever has, where .dryness
+                         // goes by it; else NULL
     double *drained; // (n_time * n_particle) dryness where it drains; else NULL
     bool shrinks;    // grains shrink under it: it acts also where it has no force
     bool drains;     // gas enters pores, likewise; rows of .saturation and .drained are

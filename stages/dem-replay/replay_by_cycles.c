@@ -22,6 +22,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct by_cycles {
     struct dem *dem;
@@ -29,7 +30,11 @@ struct by_cycles {
     bool has_looked;           // whether they have been found
     int n_crack;               // cracks at that time
     struct drainage drainage;  // where load->drains
+    const double *due; // (n) shrinkage by the last row of the load of an earlier
+                       // replay; NULL: there was none
 };
+
+static const char due_name[] = "shrinkage_due", most_name[] = "most_liquid";
 
 static struct dem *dem_of(const struct run *run)
 {
@@ -138,6 +143,43 @@ static enum status restore(struct run *run, const struct kept_state *kept,
     return status;
 }
 
+// So that grains go on to shrink from where they were, and by the most liquid that they
+// ever had, also in earlier replays.
+static enum status take_shrinkage_on(struct run *run, const struct array_list *earlier,
+                                     struct reason *reason)
+{
+    static const double largest = 1e150;
+    struct by_cycles *state = run->state;
+    const int n = run->packing->n_particle;
+    double *most = run->load->most_liquid;
+    const struct named_array *due =
+        find_array(earlier->array, earlier->count, due_name);
+    if (due && check_array(due, due_name, ARRAY_FLOAT64, n, 0, 1, reason))
+        return STATUS_BAD_DATA;
+    const struct named_array *had =
+        find_array(earlier->array, earlier->count, most_name);
+    if (had && check_array(had, most_name, ARRAY_FLOAT64, n, 0, largest, reason))
+        return STATUS_BAD_DATA;
+    if (due) state->due = due->data;
+    for (int i = 0; most && had && i < n; i++)
+        most[i] = fmax(most[i], ((const double *)had->data)[i]);
+    return STATUS_OK;
+}
+
+// What the engine has kept: EARLIER without the arrays of the stage. Frees nothing.
+static enum status restore_kept(struct run *run, const struct array_list *earlier,
+                                struct reason *reason)
+{
+    struct array_list own = {NEW_ARRAY(struct named_array, earlier->count), 0};
+    for (int k = 0; k < earlier->count; k++)
+        if (strcmp(earlier->array[k].name, due_name) &&
+            strcmp(earlier->array[k].name, most_name))
+            own.array[own.count++] = earlier->array[k];
+    const enum status status = restore_dem(run, &own, reason);
+    free(own.array);
+    return status;
+}
+
 static enum status begin(struct run *run, struct reason *reason)
 {
     struct by_cycles *state = run->state = NEW_ARRAY(struct by_cycles, 1);
@@ -157,7 +199,8 @@ static enum status begin(struct run *run, struct reason *reason)
                       "was kept by a replay %s shrinkage, and only one like it can go "
                       "on from there (dem-replay.shrinkage.strain)",
                       shrank ? "with" : "without");
-    return restore_dem(run, earlier, reason);
+    status = restore_kept(run, earlier, reason);
+    return status ? status : take_shrinkage_on(run, earlier, reason);
 }
 
 // ---- loads --------------------------------------------------------------------------
@@ -257,29 +300,36 @@ static void grow(struct run *run)
                    : scale(share, run->force[i]);
 }
 
+// The strain of each grain by the law, at ROW of the load or, -1, before it.
+static void find_due(const struct run *run, int row, double *strain)
+{
+    const struct by_cycles *state = run->state;
+    const int n = run->packing->n_particle;
+    if (row < 0 && state->due)
+        memcpy(strain, state->due, (size_t)n * sizeof *strain);
+    else
+        find_shrinkage(&run->settings->shrinkage, run->packing, row,
+                       row < 0 ? 1 : run->load->saturation[row], dryness_at(run, row),
+                       strain);
+}
+
 // Shrinks grains to SHARE of the way from the shrinkage of the row before to that of
 // this one, but none swells: not where liquid comes back, nor after an earlier replay.
 static void shrink_to(struct run *run, double share)
 {
-    const struct shrinkage *how = &run->settings->shrinkage;
     const int n = run->packing->n_particle, row = run->place.step;
     if (!run->load->shrinks || row < 0) return;
-    double *strain[3];
-    for (int k = 0; k < 3; k++) {
-        strain[k] = NEW_ARRAY(double, n);
-        if (k < 2)
-            find_shrinkage(how, run->packing, row - 1 + k,
-                           run->load->saturation[row - 1 + k >= 0 ? row - 1 + k : 0],
-                           dryness_at(run, row - 1 + k), strain[k]);
-    }
-    dem_shrinkage(dem_of(run), strain[2]);
-    for (int i = 0; i < n; i++) {
-        const double now = strain[0][i] + share * (strain[1][i] - strain[0][i]);
-        strain[2][i] = fmax(strain[2][i], now);
-    }
-    dem_set_shrinkage(dem_of(run), strain[2]);
-    for (int k = 0; k < 3; k++)
-        free(strain[k]);
+    double *from = NEW_ARRAY(double, n), *to = NEW_ARRAY(double, n),
+           *strain = NEW_ARRAY(double, n);
+    find_due(run, row - 1, from);
+    find_due(run, row, to);
+    dem_shrinkage(dem_of(run), strain);
+    for (int i = 0; i < n; i++)
+        strain[i] = fmax(strain[i], from[i] + share * (to[i] - from[i]));
+    dem_set_shrinkage(dem_of(run), strain);
+    free(from);
+    free(to);
+    free(strain);
 }
 
 // Evenly over the cycles of the step, after the ramp: by now to what is due when the
@@ -568,6 +618,16 @@ static struct array_list save(const struct run *run)
 {
     struct array_list list;
     list.array = dem_save(dem_of(run), &list.count);
+    const struct load *load = run->load;
+    const int n = run->packing->n_particle;
+    if (load->shrinks) {
+        double *due = NEW_ARRAY(double, n);
+        find_due(run, load->n_time - 1, due);
+        add_array(&list, due_name, ARRAY_FLOAT64, n, due);
+        free(due);
+    }
+    if (load->most_liquid)
+        add_array(&list, most_name, ARRAY_FLOAT64, n, load->most_liquid);
     return list;
 }
 
