@@ -101,7 +101,8 @@ static struct artifact *open_network(const char *path)
 }
 
 // Where the grains were at the last snapshot of RESPONSE, in place of their places:
-// displacements are from where the response itself began. Exits 65: other grains, by
+// displacements are from where the response itself began. If they have shrunk, also
+// their radii then. Exits 65: other grains, by
 // their number, or no snapshot.
 static void take_places(const struct artifact *response, struct packing *packing)
 {
@@ -120,6 +121,13 @@ static void take_places(const struct artifact *response, struct packing *packing
     for (int i = 0; i < n; i++)
         packing->position[i] = add(began.position[i], last[i]);
     free(displacement);
+    if (artifact_has_dataset(response, "/snapshots/shrinkage")) {
+        double *shrinkage = artifact_get(response, "/snapshots/shrinkage", NULL);
+        const double *strain = shrinkage + (size_t)(n_snapshot - 1) * (size_t)n;
+        for (int i = 0; i < n; i++)
+            packing->radius[i] = began.radius[i] * (1 - strain[i]);
+        free(shrinkage);
+    }
     packing_free(&began);
 }
 

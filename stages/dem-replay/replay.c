@@ -251,6 +251,7 @@ void response_free(struct response *response)
         free(response->snapshot[k].intact);
         free(response->snapshot[k].contact);
         free(response->snapshot[k].dryness);
+        free(response->snapshot[k].shrinkage);
     }
     free(response->snapshot);
     free(response->crack);

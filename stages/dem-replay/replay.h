@@ -55,10 +55,10 @@ struct load {
     const double *(*dryness)(void *source, int row);
     double *most_liquid; // (n_particle) kg, that each grain ever has, where .dryness
                          // goes by it; else NULL
-    double *drained; // (n_time * n_particle) dryness where it drains; else NULL
-    bool shrinks;    // grains shrink under it: it acts also where it has no force
-    bool drains;     // gas enters pores, likewise; rows of .saturation and .drained are
-                     // filled in as the replay comes to them
+    double *drained;     // (n_time * n_particle) dryness where it drains; else NULL
+    bool shrinks;        // grains shrink under it: it acts also where it has no force
+    bool drains; // gas enters pores, likewise; rows of .saturation and .drained are
+                 // filled in as the replay comes to them
 };
 
 // How to replay. It owns nothing: arrays must outlive the replay.
@@ -112,6 +112,7 @@ struct snapshot {
     int n_contact;
     double *dryness; // (n_particle) share of the pores around it that gas has entered;
                      // NULL: not known
+    double *shrinkage; // (n_particle) linear strain; NULL: none shrinks
 };
 
 // What came out of a replay; it owns its arrays, freed with response_free. Rows

@@ -609,6 +609,10 @@ static void observe(const struct run *run, struct snapshot *snapshot)
     dem_displacements(dem_of(run), snapshot->displacement);
     dem_bonds_intact(dem_of(run), snapshot->intact);
     snapshot->contact = dem_contacts(dem_of(run), &snapshot->n_contact);
+    if (run->load->shrinks) {
+        snapshot->shrinkage = NEW_ARRAY(double, run->packing->n_particle);
+        dem_shrinkage(dem_of(run), snapshot->shrinkage);
+    }
     if (!run->load->drains) return;
     snapshot->dryness = NEW_ARRAY(double, run->packing->n_particle);
     find_dryness(&drainage_of(run)->liquid, snapshot->dryness);

@@ -20,6 +20,7 @@
 //     contact_particle (c, 2), _bond, _overlap (c), _force, _position (c, 3)
 //     contact_bridge (c, 2)              volume and force
 //     snapshot_dryness (s, n)            only where pores drain
+//     snapshot_shrinkage (s, n)          only where grains shrink
 // save_load adds force (n, 3) and taken_off (6); save_loads makes load_force (rows, n,
 // 3). Units are SI. Arrays have no shapes in the file, only lengths, so each is read
 // with the length that it must have.
@@ -28,6 +29,7 @@
 #include "basics/memory.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,7 +37,8 @@
 // before doubles have gaps.
 static const double LARGEST = 1e150, MOST_CYCLES = 0x1p53;
 static const char loads_name[] = "load_force", bridges_name[] = "contact_bridge",
-                  dryness_name[] = "snapshot_dryness";
+                  dryness_name[] = "snapshot_dryness",
+                  shrinkage_name[] = "snapshot_shrinkage";
 
 // ---- out ----------------------------------------------------------------------------
 
@@ -67,18 +70,25 @@ static void save_snapshots(struct array_list *list, const struct response *respo
     free(intact);
 }
 
-// Only where pores drain: of all snapshots or of none.
-static void save_dryness(struct array_list *list, const struct response *response,
-                         const struct packing *packing)
+// A member of struct snapshot that has a number of each grain; of all snapshots or
+// none.
+static double **member_of(const struct snapshot *snapshot, size_t member)
+{
+    return (double **)((char *)(uintptr_t)snapshot + member);
+}
+
+static void save_numbers(struct array_list *list, const char *name, size_t member,
+                         const struct response *response, const struct packing *packing)
 {
     const size_t count = (size_t)response->n_snapshot;
     const size_t n = (size_t)packing->n_particle;
-    if (count == 0 || !response->snapshot[0].dryness) return;
-    double *dryness = NEW_ARRAY(double, count *n);
+    if (count == 0 || !*member_of(response->snapshot, member)) return;
+    double *number = NEW_ARRAY(double, count *n);
     for (size_t s = 0; s < count; s++)
-        memcpy(dryness + s * n, response->snapshot[s].dryness, n * sizeof *dryness);
-    add_array(list, dryness_name, ARRAY_FLOAT64, (int64_t)(count * n), dryness);
-    free(dryness);
+        memcpy(number + s * n, *member_of(&response->snapshot[s], member),
+               n * sizeof *number);
+    add_array(list, name, ARRAY_FLOAT64, (int64_t)(count * n), number);
+    free(number);
 }
 
 // The contacts of all snapshots, one after the other.
@@ -170,7 +180,10 @@ struct array_list save_response(const struct response *response,
               !isnan(response->weight_unbalanced_ratio),
               &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
-    save_dryness(&list, response, packing);
+    save_numbers(&list, dryness_name, offsetof(struct snapshot, dryness), response,
+                 packing);
+    save_numbers(&list, shrinkage_name, offsetof(struct snapshot, shrinkage), response,
+                 packing);
     save_contacts(&list, response);
     return list;
 }
@@ -363,18 +376,19 @@ static enum status restore_snapshots(struct response *response,
     return STATUS_OK;
 }
 
-static enum status restore_dryness(struct response *response,
-                                   const struct packing *packing,
-                                   const struct load *load, struct array_reader *reader)
+// From 0 to 1.
+static enum status restore_numbers(struct response *response, const char *name,
+                                   size_t member, const struct packing *packing,
+                                   struct array_reader *reader)
 {
     const int64_t n = packing->n_particle;
-    if (!load->drains || response->n_snapshot == 0) return STATUS_OK;
-    const double *dryness =
-        read_array(reader, dryness_name, ARRAY_FLOAT64, response->n_snapshot * n, 0, 1);
-    if (!dryness) return STATUS_BAD_DATA;
+    if (response->n_snapshot == 0) return STATUS_OK;
+    const double *number =
+        read_array(reader, name, ARRAY_FLOAT64, response->n_snapshot * n, 0, 1);
+    if (!number) return STATUS_BAD_DATA;
     for (int s = 0; s < response->n_snapshot; s++)
-        response->snapshot[s].dryness =
-            duplicate(dryness + s * n, (size_t)n, sizeof *dryness);
+        *member_of(&response->snapshot[s], member) =
+            duplicate(number + s * n, (size_t)n, sizeof *number);
     return STATUS_OK;
 }
 
@@ -470,7 +484,13 @@ enum status restore_response(struct response *response, const struct packing *pa
         status = restore_cracks(response, load->n_time, past, &reader);
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
-    if (status == STATUS_OK) status = restore_dryness(response, packing, load, &reader);
+    if (status == STATUS_OK && load->drains)
+        status = restore_numbers(response, dryness_name,
+                                 offsetof(struct snapshot, dryness), packing, &reader);
+    if (status == STATUS_OK && load->shrinks)
+        status =
+            restore_numbers(response, shrinkage_name,
+                            offsetof(struct snapshot, shrinkage), packing, &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);
     return status;
 }

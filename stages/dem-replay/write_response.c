@@ -13,7 +13,8 @@
 //                 where grains shrink or pores drain
 //     /contacts   particles (c, 2): bonded at the start, or in contact at a snapshot
 //     /snapshots  time, saturation (s); displacement, force (s, n); bond_intact (s, b);
-//                 contact_force (s, c); with bridges bridge_volume, _force, _gap (s, c)
+//                 contact_force (s, c); with bridges bridge_volume, _force, _gap (s,
+//                 c); where pores drain dryness, where grains shrink shrinkage (s, n)
 //     /summary    cracks, time step, and how far from rest and from the start
 // SI units; forces on the grains, displacements from where the packing has them.
 #include "write_response.h"
@@ -248,6 +249,19 @@ static void put_dryness(struct artifact *artifact, const struct packing *packing
     free(dryness);
 }
 
+static void put_shrinkage(struct artifact *artifact, const struct packing *packing,
+                          const struct response *response)
+{
+    const size_t n = (size_t)packing->n_particle;
+    const int count = response->n_snapshot;
+    double *strain = NEW_ARRAY(double, (size_t)count *n);
+    for (int s = 0; s < count; s++)
+        memcpy(strain + (size_t)s * n, response->snapshot[s].shrinkage,
+               n * sizeof *strain);
+    artifact_put_table(artifact, "/snapshots/shrinkage", strain, count, (int)n);
+    free(strain);
+}
+
 // Pieces of SNAPSHOT: grains that intact bonds join.
 static void find_fragments(struct fragments *fragments, const struct packing *packing,
                            const uint8_t *held, const struct snapshot *snapshot)
@@ -300,6 +314,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
     if (load->drains) put_dryness(artifact, packing, response);
+    if (load->shrinks) put_shrinkage(artifact, packing, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
     artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",

@@ -326,4 +326,24 @@ with scratch() as folder:
                and all(np.abs(moved[entry][:] - began[entry]).max() < 1e-10 * unit for entry in BODIES + ["throats/length", "throats/radius"]),
                f"{title} turned: only places change", moved if status else "")
         moved_at_random(title, 10 ** np.array([-5, -4.2, -3.4, -2, -1.4, -1.2, -1, -0.8]), *plane, way=way)
+
+    # Grains that shrink with the distances between them: all of the network does.
+    for title, pack, tessellate, merge in [("lattice", ["method=cubic", "counts=[4,3,3]"], [], []),
+                                           ("random grains", random, void, None)]:
+        shrink = 0.02
+        packing = make("network", pack, tessellate, merge)
+        place, radius = packing["particles/position"][:], packing["particles/radius"][:]
+        packing.close()
+        lay(-shrink * place)
+        with h5py.File(at("response"), "r+") as response:
+            rows = np.full((1, len(place)), shrink)
+            response.create_dataset("snapshots/shrinkage", data=rows).attrs.update(
+                response["snapshots/bond_intact"].attrs)
+        status, moved = deform("network")
+        began = h5py.File(at("network"))
+        lengths = {"throats/radius": 1, "throats/length": 1, "particles/radius": 1, "throats/volume": 3,
+                   "throats/hydraulic_radius": 1, "throats/diffusive_conductance": 1}
+        ok(status == 0 and all(np.allclose(moved[e], (1 - shrink) ** power * began[e][:], rtol=1e-7, atol=0)
+                               for e, power in lengths.items() if e in began),
+           f"{title} that shrink: so do their pores", moved if status else "")
 done()
