@@ -102,8 +102,7 @@ static struct artifact *open_network(const char *path)
 
 // Where the grains were at the last snapshot of RESPONSE, in place of their places:
 // displacements are from where the response itself began. If they have shrunk, also
-// their radii then. Exits 65: other grains, by
-// their number, or no snapshot.
+// their radii then. Exits 65: other grains, by their number, or no snapshot.
 static void take_places(const struct artifact *response, struct packing *packing)
 {
     struct packing began = artifact_get_packing(response);

@@ -29,7 +29,6 @@
 #include "basics/memory.h"
 
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -70,23 +69,28 @@ static void save_snapshots(struct array_list *list, const struct response *respo
     free(intact);
 }
 
-// A member of struct snapshot that has a number of each grain; of all snapshots or
-// none.
-static double **member_of(const struct snapshot *snapshot, size_t member)
+// Members of a snapshot that have a number of each grain; of all snapshots or none.
+typedef double **numbers_of(struct snapshot *);
+
+static double **dryness_of(struct snapshot *snapshot)
 {
-    return (double **)((char *)(uintptr_t)snapshot + member);
+    return &snapshot->dryness;
 }
 
-static void save_numbers(struct array_list *list, const char *name, size_t member,
+static double **shrinkage_of(struct snapshot *snapshot)
+{
+    return &snapshot->shrinkage;
+}
+
+static void save_numbers(struct array_list *list, const char *name, numbers_of *of,
                          const struct response *response, const struct packing *packing)
 {
     const size_t count = (size_t)response->n_snapshot;
     const size_t n = (size_t)packing->n_particle;
-    if (count == 0 || !*member_of(response->snapshot, member)) return;
+    if (count == 0 || !*of(response->snapshot)) return;
     double *number = NEW_ARRAY(double, count *n);
     for (size_t s = 0; s < count; s++)
-        memcpy(number + s * n, *member_of(&response->snapshot[s], member),
-               n * sizeof *number);
+        memcpy(number + s * n, *of(&response->snapshot[s]), n * sizeof *number);
     add_array(list, name, ARRAY_FLOAT64, (int64_t)(count * n), number);
     free(number);
 }
@@ -180,10 +184,8 @@ struct array_list save_response(const struct response *response,
               !isnan(response->weight_unbalanced_ratio),
               &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
-    save_numbers(&list, dryness_name, offsetof(struct snapshot, dryness), response,
-                 packing);
-    save_numbers(&list, shrinkage_name, offsetof(struct snapshot, shrinkage), response,
-                 packing);
+    save_numbers(&list, dryness_name, dryness_of, response, packing);
+    save_numbers(&list, shrinkage_name, shrinkage_of, response, packing);
     save_contacts(&list, response);
     return list;
 }
@@ -378,7 +380,7 @@ static enum status restore_snapshots(struct response *response,
 
 // From 0 to 1.
 static enum status restore_numbers(struct response *response, const char *name,
-                                   size_t member, const struct packing *packing,
+                                   numbers_of *of, const struct packing *packing,
                                    struct array_reader *reader)
 {
     const int64_t n = packing->n_particle;
@@ -387,7 +389,7 @@ static enum status restore_numbers(struct response *response, const char *name,
         read_array(reader, name, ARRAY_FLOAT64, response->n_snapshot * n, 0, 1);
     if (!number) return STATUS_BAD_DATA;
     for (int s = 0; s < response->n_snapshot; s++)
-        *member_of(&response->snapshot[s], member) =
+        *of(&response->snapshot[s]) =
             duplicate(number + s * n, (size_t)n, sizeof *number);
     return STATUS_OK;
 }
@@ -485,12 +487,10 @@ enum status restore_response(struct response *response, const struct packing *pa
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
     if (status == STATUS_OK && load->drains)
-        status = restore_numbers(response, dryness_name,
-                                 offsetof(struct snapshot, dryness), packing, &reader);
+        status = restore_numbers(response, dryness_name, dryness_of, packing, &reader);
     if (status == STATUS_OK && load->shrinks)
         status =
-            restore_numbers(response, shrinkage_name,
-                            offsetof(struct snapshot, shrinkage), packing, &reader);
+            restore_numbers(response, shrinkage_name, shrinkage_of, packing, &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);
     return status;
 }
