@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# At which strain do layers of different thickness crack, beside Griffith's criterion for a
+# constrained film? Each shrinks evenly:
+#
+#     make critical-thickness                     ->  build/runs/critical-thickness/table.md, strains.svg
+#     make critical-thickness CRITICAL_SEEDS="1"  ->  the same of one packing
+
+CRITICAL_SEEDS ?= 1 2 3# of the packings
+
+critical := $(RUNS)/critical-thickness
+critical_scene := samples/craquelure-40.json
+critical_thicknesses := 3 4 6 8 12
+# By thickness in mean diameters of 0.52 um: heights of the layer and of the packing it is cut from,
+# and sides of the box, 5 and 4 thicknesses, in um.
+critical/3 := 1.56 2.08 7.8 6.24
+critical/4 := 2.08 2.6 10.4 8.32
+critical/6 := 3.12 3.64 15.6 12.48
+critical/8 := 4.16 4.68 20.8 16.64
+critical/12 := 6.24 6.76 31.2 24.96
+
+critical-thickness: ## at which strain layers crack, beside Griffith's criterion (ten minutes of one core)
+
+ifneq ($(call asked,critical-thickness,$(critical)),)
+critical_pack = slab.upper=$(word 1,$1)e-6 upper=[$(word 3,$1)e-6,$(word 4,$1)e-6,$(word 2,$1)e-6]
+# Loading takes time in proportion to the thickness $1, as waves do.
+critical_load = shrinkage.law=uniform shrinkage.strain=0.02 shrinkage.steps=40 snapshots=[0] \
+	cycles=$(shell echo $$((16 * $1))) most_cycles=$(shell echo $$((64 * $1)))
+# Of thickness $1 and seed $2, in folder $3.
+define critical_layer
+$(call pack,$3/packing.h5,$(critical_scene),seed=$2 $(call critical_pack,$(critical/$1)),)
+$(call dem-replay,$3/response.h5,$(critical_scene),$(call critical_load,$1),$3/packing.h5)
+endef
+$(foreach h,$(critical_thicknesses),$(foreach s,$(CRITICAL_SEEDS),$(call critical_layer,$h,$s,$(critical)/$h-$s)))
+critical_responses := $(foreach h,$(critical_thicknesses),$(CRITICAL_SEEDS:%=$(critical)/$h-%/response.h5))
+$(call report,$(critical)/table.md,studies/critical-thickness/report,$(critical_responses),table $(critical_responses))
+$(call report,$(critical)/strains.svg,studies/critical-thickness/report,$(critical_responses),figure $(critical_responses))
+
+$(call study,critical-thickness,$(critical)/table.md $(critical)/strains.svg)
+endif
