@@ -236,30 +236,28 @@ static void put_snapshots(struct artifact *artifact, const struct packing *packi
     free(intact);
 }
 
-static void put_dryness(struct artifact *artifact, const struct packing *packing,
-                        const struct response *response)
+static const double *dryness_of(const struct snapshot *snapshot)
 {
-    const size_t n = (size_t)packing->n_particle;
-    const int count = response->n_snapshot;
-    double *dryness = NEW_ARRAY(double, (size_t)count *n);
-    for (int s = 0; s < count; s++)
-        memcpy(dryness + (size_t)s * n, response->snapshot[s].dryness,
-               n * sizeof *dryness);
-    artifact_put_table(artifact, "/snapshots/dryness", dryness, count, (int)n);
-    free(dryness);
+    return snapshot->dryness;
 }
 
-static void put_shrinkage(struct artifact *artifact, const struct packing *packing,
-                          const struct response *response)
+static const double *shrinkage_of(const struct snapshot *snapshot)
 {
-    const size_t n = (size_t)packing->n_particle;
+    return snapshot->shrinkage;
+}
+
+// A number of each of N grains, at each snapshot.
+static void put_numbers(struct artifact *artifact, const char *name,
+                        const double *(*of)(const struct snapshot *), int n,
+                        const struct response *response)
+{
     const int count = response->n_snapshot;
-    double *strain = NEW_ARRAY(double, (size_t)count *n);
+    double *number = NEW_ARRAY(double, (size_t)count *(size_t)n);
     for (int s = 0; s < count; s++)
-        memcpy(strain + (size_t)s * n, response->snapshot[s].shrinkage,
-               n * sizeof *strain);
-    artifact_put_table(artifact, "/snapshots/shrinkage", strain, count, (int)n);
-    free(strain);
+        memcpy(number + (size_t)s * (size_t)n, of(&response->snapshot[s]),
+               (size_t)n * sizeof *number);
+    artifact_put_table(artifact, name, number, count, n);
+    free(number);
 }
 
 // Pieces of SNAPSHOT: grains that intact bonds join.
@@ -313,8 +311,12 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     put_contacts(artifact, response, &contacts, settings->liquid.volume > 0);
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
-    if (load->drains) put_dryness(artifact, packing, response);
-    if (load->shrinks) put_shrinkage(artifact, packing, response);
+    if (load->drains)
+        put_numbers(artifact, "/snapshots/dryness", dryness_of, packing->n_particle,
+                    response);
+    if (load->shrinks)
+        put_numbers(artifact, "/snapshots/shrinkage", shrinkage_of, packing->n_particle,
+                    response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
     artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",
