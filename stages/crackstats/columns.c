@@ -12,6 +12,8 @@
 #include <stdlib.h>
 
 static const double SMOOTHING = 0.8, CUT_OFF = 4; // diameters; of the smoothing
+// Of a column: bonds of a lattice lie on the borders of columns, to rounding.
+static const double BORDER = 1e-6;
 
 struct columns columns_init(const struct run *run)
 {
@@ -25,6 +27,7 @@ struct columns columns_init(const struct run *run)
         high = fmax(high, z + radius);
         if (run->held && run->held[i]) c.floor = fmax(c.floor, z);
     }
+    c.top = high;
     c.height = high - low;
     if (isinf(c.floor)) c.floor = low;
     c.n = 1;
@@ -53,7 +56,7 @@ int column_at(const struct columns *columns, double x, double y)
     for (int axis = 0; axis < 2; axis++) {
         const int n = columns->count[axis];
         const double along =
-            floor((at[axis] - columns->lower[axis]) / columns->edge[axis]);
+            floor((at[axis] - columns->lower[axis]) / columns->edge[axis] + BORDER);
         index[axis] = columns->periodic[axis]
                           ? brought_back((int)fmod(along, n), n, true)
                           : (int)fmin(fmax(along, 0), n - 1);

@@ -12,15 +12,17 @@
 // Columns side by side, the one (x, y) at x + count[0] y. Lengths in m. Where no grain
 // is held, `floor` is the lowest surface of a grain.
 struct columns {
-    int count[2], n;      // along x and y; of all
-    double edge[2];       // of one
-    double lower[2];      // corner of the first
-    bool periodic[2];     // whether they repeat
-    double diameter;      // mean, of the grains
-    double floor, height; // highest centre of a held grain; of the layer, by surfaces
+    int count[2], n;   // along x and y; of all
+    double edge[2];    // of one
+    double lower[2];   // corner of the first
+    bool periodic[2];  // whether they repeat
+    double diameter;   // mean, of the grains
+    double floor, top; // highest centre of a held grain; highest surface of any
+    double height;     // of the layer, by surfaces
 };
 
-// The column that a point lies in; one outside of the box counts with the nearest.
+// The column that a point lies in, on the border of two, to rounding, the upper one;
+// one outside of the box counts with the nearest.
 int column_at(const struct columns *columns, double x, double y);
 
 // The neighbour of COLUMN by DX, DY columns, or -1 outside of the box.

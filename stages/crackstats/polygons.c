@@ -142,9 +142,13 @@ static void find_through(const struct columns *columns, const struct run *run,
                          const uint8_t *intact, const bool *is_crack,
                          struct polygons *p)
 {
-    static const double least = 0.1; // of the bonds in a slice
-    const double top = run->packing.upper.z - columns->floor;
-    const int slices = (int)fmax(1, floor(top / columns->diameter - 0.5));
+    static const double least = 0.1, border = 1e-6; // of the bonds in a slice; of it
+    const double above = columns->top - columns->floor;
+    if (above < columns->height / 2) { // held at its sides or from above: no floor
+        p->through = NAN;
+        return;
+    }
+    const int slices = (int)fmax(1, floor(above / columns->diameter - 0.5 + border));
     int *of = components(columns, is_crack, true);
     const size_t size = (size_t)columns->n * (size_t)slices;
     int *all = NEW_ARRAY(int, size), *broken = NEW_ARRAY(int, size);
@@ -155,7 +159,8 @@ static void find_through(const struct columns *columns, const struct run *run,
         const struct vector along = bond_vector(&run->packing, b);
         const double z = run->packing.position[run->packing.bond[b][0]].z +
                          0.5 * along.z - columns->floor;
-        const int slice = (int)floor(z / columns->diameter);
+        // On a border the lower one: layers of a lattice lie on it, the first too.
+        const int slice = (int)ceil(z / columns->diameter - border) - 1;
         if (slice < 0 || slice >= slices) continue;
         all[of[c] * slices + slice]++;
         broken[of[c] * slices + slice] += !intact[b];

@@ -12,7 +12,7 @@ import numpy as np
 sys.path.insert(0, "tests")
 from tap import done, ok, run, scratch
 
-SIDE, HEIGHT, RADIUS = 48, 6, 0.25e-6
+SIDE, HEIGHT, RADIUS = 48, 6, 0.3e-6  # of which multiples round: bonds lie on the borders of columns
 D = 2 * RADIUS
 SCENE = {"pack": {"method": "cubic", "radius": RADIUS, "counts": [SIDE, SIDE, HEIGHT],
                   "periodic": [True, True, False]},
@@ -91,6 +91,23 @@ with scratch() as folder:
     lengths = 2 * 4 * SIDE * D
     border = shape["opened"] / shape["width"] * (SIDE * D) ** 2
     ok(near(border, np.pi / 4 * lengths, 1e-6), "borders as long as those of cells, times pi/4")
+
+    # Neither a box with room above the layer changes that, nor are cracks said to end where
+    # the sides of the layer are held too, so that it has no floor to reach.
+    with open(at("whole.h5"), "rb") as file:
+        kept = file.read()
+    with h5py.File(at("whole.h5"), "r+") as file:
+        upper = file["domain/upper"][:]
+        file["domain/upper"][2] = upper[2] + 4 * D
+    shape, _, _ = look(cut_x | cut_y)
+    ok(shape["count"] == 16 and shape["through"] == 1, "a box higher than the layer: the same", shape)
+    with h5py.File(at("whole.h5"), "r+") as file:
+        file["domain/upper"][2] = upper[2]
+        file["particles/held"][:] = held | (cell[:, 0] == 3)
+    shape, _, _ = look(cut_x | cut_y)
+    ok(shape["count"] == 16 and shape["through"] is None, "held up to its top: through nothing", shape)
+    with open(at("whole.h5"), "wb") as file:
+        file.write(kept)
 
     # Bricks: every second row is shifted by half a brick.
     row = first[:, 1] // 12
