@@ -153,6 +153,18 @@ static void check_sizes(const struct packing *packing, const char *path)
     }
 }
 
+// They have no bonds, but would touch, shrink and enclose pores as real ones. Forces
+// have none.
+static void check_auxiliary(const struct artifact *input, const struct packing *packing)
+{
+    for (int i = 0; is_packing(input) && i < packing->n_particle; i++)
+        if (is_auxiliary(packing, i))
+            die(STATUS_BAD_DATA,
+                "%s: /particles/kind: grain %d is auxiliary: a packing that only "
+                "shrinks or drains must have no extra layer (pack.extra_layer)",
+                input_name(input->path), i);
+}
+
 // Menisci follow one packing from its beginning.
 static void check_drains(const struct artifact *input,
                          const struct replay_parameters *parameters,
@@ -468,6 +480,7 @@ int main(int argc, char **argv)
     choose_bridges(&parameters, input, invocation.quiet);
     struct packing packing = artifact_get_packing(input);
     check_sizes(&packing, input->path);
+    check_auxiliary(input, &packing);
     struct load load = read_load(input, &parameters, packing.n_particle);
     struct array_list engine = {NULL, 0};
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);

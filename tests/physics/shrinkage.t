@@ -196,6 +196,9 @@ with scratch() as folder:
        "a later replay goes on from the shrunken grains")
     ok(refused("dem-replay", "-p", at("layer.json"), "-s", "shrinkage.law=liquid",
                at("layer.h5"), "-o", at("no.h5")), "no liquid to go by: refused")
+    run("pack", "-q", "-p", at("layer.json"), "-s", "extra_layer=true", "-o", at("extra.h5"))
+    ok(refused("dem-replay", "-p", at("layer.json"), at("extra.h5"), "-o", at("no.h5")),
+       "auxiliary grains of a boundary layer: refused")
 
     # A load in two pieces, of which the second knows nothing of the first but its state.
     def piece(name, first, last):
