@@ -128,7 +128,7 @@ with scratch() as folder:
     # Scattered strengths, so that it cracks here and there.
     cracking = ["dem-replay", "-q", "-p", at("layer.json"), "-s",
                 "bond.strength.distribution=normal", "-s", "bond.normal_strength=2e5",
-                "-s", "shrinkage.steps=20", at("layer.h5")]
+                "-s", "shrinkage.steps=20", "-s", "snapshots=[0.95,0.5,0]", at("layer.h5")]
     began = time.monotonic()
     run(*cracking, "-o", at("whole.h5"))
     lasted = time.monotonic() - began
