@@ -8,7 +8,7 @@ import subprocess
 import h5py
 import numpy as np
 
-from tap import run
+from tap import run, sets
 
 
 class Diagram:
@@ -144,8 +144,7 @@ def tessellate(grains, edge, folder, *options, periodic=(False,) * 3, radius=Non
 def of_packing(folder, *settings, options=(), name="own"):
     """The diagram of a packing of pack's own, by the SETTINGS."""
     path = os.path.join(folder, name)
-    words = [word for s in settings for word in ("--set", s)]
-    run("pack", "-q", *words, "-o", path + "-packing.h5")
+    run("pack", "-q", *sets(*settings), "-o", path + "-packing.h5")
     run("tessellate", "-q", *options, path + "-packing.h5", "-o", path + ".h5")
     return Diagram(path + ".h5")
 

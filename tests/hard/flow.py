@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 
 from cases import case, must
+from tap import sets
 
 DROP = 3.0
 
@@ -16,13 +17,13 @@ def packing(scene, grains, *settings, periodic="[false,false,false]"):
     with open(scene.grains, "w") as file:
         file.writelines(" ".join(map(repr, row)) + "\n" for row in np.asarray(grains, float).tolist())
     words = [f"periodic={periodic}", *settings]
-    scene.stage("pack", *(word for w in words for word in ("--set", w)))
+    scene.stage("pack", *sets(*words))
 
 
 def flow(scene, title, *settings, area=1.0):
     """The flow along z under DROP, whose books must close."""
     words = ["along=z", f"pressure_drop={DROP}", *settings]
-    scene.stage("flow", *(word for w in words for word in ("--set", w)), input=scene.at("pack"))
+    scene.stage("flow", *sets(*words), input=scene.at("pack"))
     file = h5py.File(scene.at("flow"))
     inflow = file["walls/inflow"][:]
     force = sum(file[f"{who}/{kind}_force"][:].sum(axis=0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from cases import case, must
 from diagram import Diagram
+from tap import sets
 
 ALL, NONE = [True] * 3, [False] * 3
 
@@ -20,8 +21,8 @@ def network(scene, grains, *pack, tessellate=(), upper=None, periodic=NONE):
     words = [f"periodic={str(list(periodic)).lower()}", *pack]
     if upper is not None:
         words += ["lower=[0,0,0]", f"upper={list(map(float, upper))}"]
-    scene.stage("pack", *(word for w in words for word in ("--set", w)))
-    scene.stage("tessellate", *(word for w in tessellate for word in ("--set", w)))
+    scene.stage("pack", *sets(*words))
+    scene.stage("tessellate", *sets(*tessellate))
     return Diagram(scene.at("tessellate"))
 
 

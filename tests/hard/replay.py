@@ -8,7 +8,7 @@ import numpy as np
 
 from cases import case, must
 from scene import CHAIN, QUASI_STATIC, pull, write_forces
-from tap import read
+from tap import read, sets
 
 
 @case("bond-strength")
@@ -184,13 +184,12 @@ def capillary(scene):
             "normal_stiffness": 20, "shear_stiffness": 10, "bond.normal_stiffness": 2.2e14,
             "bond.shear_stiffness": 8.8e13}.items()]
 
-    words = [word for setting in softer(30) for word in ("--set", setting)]
-    scene.refused("dem-replay", 3, r"step \d+ of the load .* diverged in cycle", "-q", *words, input=scene.at("pack"))
+    scene.refused("dem-replay", 3, r"step \d+ of the load .* diverged in cycle", "-q", *sets(*softer(30)), input=scene.at("pack"))
     kinds = {"soft": softer(5), "no bonds": ["bond.by=none"],
              "never": [never, "bond.shear_strength=1e15"], "always": [always, "bond.shear_strength=1"]}
     said = []
     for kind, settings in kinds.items():
-        status, message = scene.try_stage("dem-replay", *(word for s in settings for word in ("--set", s)),
+        status, message = scene.try_stage("dem-replay", *sets(*settings),
                                           input=scene.at("pack"))
         must(status == 0, f"{kind}: exit {status}: {message}")
         saturation, liquid, drained = (scene.get("dem-replay", f"history/{name}") for name in

@@ -8,6 +8,7 @@ import numpy as np
 sys.path.insert(0, "tests")
 from motions import Contacts, write_motion
 from refusals import BAD_DATA, USAGE, done, refused
+from tap import sets
 
 GRAINS = np.array([[0.0, 0, 0], [1, 0, 0], [2, 1, 0.5]])
 
@@ -18,8 +19,7 @@ def motion(name, snapshots=2, **more):
 
 
 def refuse(title, message, *settings, source="good", status=BAD_DATA):
-    words = [word for setting in settings for word in ("--set", setting)]
-    refused(title, status, ["shearstats", "-q", *words, source], message)
+    refused(title, status, ["shearstats", "-q", *sets(*settings), source], message)
 
 
 motion("good", lower=(-9,) * 3, upper=(9,) * 3, walls=[(0, 0, 0)])

@@ -5,6 +5,7 @@ import sys
 
 sys.path.insert(0, "tests")
 from refusals import BAD_DATA, done, refused, text_file
+from tap import sets
 
 # ---- imported text ----------------------------------------------------------------------
 
@@ -66,9 +67,8 @@ for method, line in [
         ("radius_expansion target=pressure target_value=1",
          r"pack.target: must not be pressure for radius_expansion of grains, .*"),
         ("domain_contraction", r"pack.method: domain_contraction closes in a box that repeats .*")]:
-    words = [w for each in f"method={method}".split() for w in ("--set", each)]
     refused(f"own grains by {method}: refused", BAD_DATA,
-            ["pack", *words, text_file("grains", "0 0 0 1e-3\n0 0 1e-3 1e-3\n0 0 4e-3 1e-3\n")],
+            ["pack", *sets(*f"method={method}".split()), text_file("grains", "0 0 0 1e-3\n0 0 1e-3 1e-3\n0 0 4e-3 1e-3\n")],
             line)
 
 # ---- imported dumps ---------------------------------------------------------------------

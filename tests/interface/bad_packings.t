@@ -5,11 +5,12 @@ import sys
 
 sys.path.insert(0, "tests")
 from refusals import BAD_DATA, UNSTABLE, done, refused
+from tap import sets
 
 
 def scene(title, words, *lines, status=BAD_DATA):
     """pack with WORDS, assignments between blanks."""
-    refused(title, status, ["pack", *(w for word in words.split() for w in ("--set", word))],
+    refused(title, status, ["pack", *sets(*words.split())],
             *lines)
 
 

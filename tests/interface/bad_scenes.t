@@ -5,6 +5,7 @@ import sys
 
 sys.path.insert(0, "tests")
 from refusals import BAD_DATA, UNSTABLE, damaged, done, make, refused, removed, setting, value
+from tap import sets
 
 DRY, REPLAY = ("dry", "network"), ("dem-replay", "forces")
 setting("air wetter than saturated is refused", BAD_DATA, "air_vapour_pressure=3000",
@@ -91,7 +92,7 @@ for program, name, changes in [
         ("flow", "throats/conductance", ["viscosity=1e-300"]),
         ("flow", "particles/buoyancy", ["gravity=[0,0,1e150]", "density=1e150"])]:
     refused(f"{program} refuses results that overflow: {name}", BAD_DATA,
-            [program, *(word for change in changes for word in ("--set", change)),
+            [program, *sets(*changes),
              "packing" if program == "flow" else "network"],
             f"the results are out of range: /{name}: row 0: must be at most 1e150 in size, got .*")
 

@@ -12,14 +12,10 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 folder = scratch()
 at = lambda name: os.path.join(folder.name, name)
-
-
-def settings(*words):
-    return [word for each in words for word in ("--set", each)]
 
 
 def text(name, position, radius):
@@ -48,12 +44,12 @@ def names(report):
 
 
 # 150 grains that grew until they jammed, as text.
-run("pack", "-q", *settings("method=radius_expansion", "count=150", "radius=50e-6", "seed=2",
-                            "dynamics.friction=0", "touching_gap=0.01"), "-o", at("own"))
+run("pack", "-q", *sets("method=radius_expansion", "count=150", "radius=50e-6", "seed=2",
+                        "dynamics.friction=0", "touching_gap=0.01"), "-o", at("own"))
 with h5py.File(at("own")) as file:
     x, r = file["particles/position"][:], file["particles/radius"][:]
     low, high = file["domain/lower"][:], file["domain/upper"][:]
-near = settings("touching_gap=0.01")
+near = sets("touching_gap=0.01")
 n = len(r)
 distance = lambda p: np.linalg.norm(p[:, None] - p[None], axis=2)
 first, second = np.triu_indices(n, 1)
@@ -86,7 +82,7 @@ with open(at("scene.json"), "w") as file:
     json.dump(report["suggested"], file)
 ok(call("dem-replay", "-p", at("scene.json"), "--parameters")[0] == 0,
    "what is suggested is a section of a scene")
-status, _, said = call("pack", *settings("method=import"), *near, good, "-o", at("packed"))
+status, _, said = call("pack", *sets("method=import"), *near, good, "-o", at("packed"))
 ok(status == 0 and said == "", "and pack has nothing to say", said)
 status, report, _ = check(at("packed"))
 ok(status == 0 and report["inputs"][0]["schema"] == "craquelure/packing/1", "a packing passes")
@@ -107,8 +103,8 @@ random = np.random.default_rng(1)
 gas = x * 1.5
 shuffled = np.concatenate([x, x[3:4] + [1e-7, 0, 0]])
 with_twin = np.append(r, r[3])
-tall = settings("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{8 * high[2]}]")
-small = settings("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{0.5 * high[2]}]")
+tall = sets("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{8 * high[2]}]")
+small = sets("lower=[0,0,0]", f"upper=[{high[0]},{high[1]},{0.5 * high[2]}]")
 BAD = [
     # title, position, radius, settings of pack, findings, status of pack, what mends it
     ("millimetres", 1e3 * x, 1e3 * r, [], ["units"], 0, ["import.scale=1e-3"]),
@@ -125,14 +121,14 @@ BAD = [
 ]
 for title, position, radius, box, wrong, packed, mends in BAD:
     path = text("bad", position, radius)
-    command = ["pack", *settings("method=import"), *near, *box]
+    command = ["pack", *sets("method=import"), *near, *box]
     status, _, said = call(*command, path, "-o", at("bad.h5"))
     words = said.splitlines()
     ok(status == packed and len(words) == (1 if packed else len(wrong))
        and all(line.startswith(f"pack: {path}: ") for line in words),
        f"{title}: pack {'refuses' if packed else 'warns'}", (status, said))
     if packed:
-        ok(call(*command, *settings("check=warn"), path, "-o", at("bad.h5"))[0] == 0,
+        ok(call(*command, *sets("check=warn"), path, "-o", at("bad.h5"))[0] == 0,
            f"{title}: packed all the same where asked for")
     status, report, agree = check(at("bad.h5"), *near)
     ok(status == 1 and names(report) == wrong and agree, f"{title}: check says so",
@@ -145,20 +141,20 @@ for title, position, radius, box, wrong, packed, mends in BAD:
     if not box:
         ok(names(check(path, *near)[1]) == wrong, f"{title}: and of the text")
     if mends:
-        status, _, said = call(*command, *settings(*mends), path, "-o", at("bad.h5"))
+        status, _, said = call(*command, *sets(*mends), path, "-o", at("bad.h5"))
         ok((status, said) == (0, "") and check(at("bad.h5"), *near)[0] == 0,
            f"{title}: {' '.join(mends)} mends it", said)
         with h5py.File(at("bad.h5")) as file:
             ok(np.allclose(file["particles/position"], x, rtol=1e-12, atol=0)
                and np.allclose(file["particles/radius"], r, rtol=1e-12, atol=0),
                f"{title}: to the grains themselves")
-quiet = call("pack", "-q", *settings("method=import"), text("bad", 1e3 * x, 1e3 * r), "-o",
+quiet = call("pack", "-q", *sets("method=import"), text("bad", 1e3 * x, 1e3 * r), "-o",
              at("bad.h5"))
 ok(quiet == (0, "", ""), "-q keeps warnings back", quiet)
 
 # ---- numbers, against places and pairs one by one -----------------------------------------
 
-run("pack", "-q", *settings("method=import"), *near, *tall, good, "-o", at("tall.h5"))
+run("pack", "-q", *sets("method=import"), *near, *tall, good, "-o", at("tall.h5"))
 box = check(at("tall.h5"))[1]["box"]
 places = random.uniform(0, 1, (40000, 3)) * [high[0], high[1], 8 * high[2]]
 far = np.ones(len(places), bool)
@@ -183,17 +179,17 @@ ok(np.isclose(report["bonds"]["joining_gap"], gaps[k], rtol=1e-9),
 
 # ---- a replay without bonds ---------------------------------------------------------------
 
-run("pack", "-q", *settings("method=import"), loose, "-o", at("loose.h5"))
+run("pack", "-q", *sets("method=import"), loose, "-o", at("loose.h5"))
 with h5py.File(at("loose.h5"), "r+") as file:
     file.attrs["schema"] = "craquelure/forces/1"
     file["time"], file["saturation"] = [0.0, 1.0], [1.0, 0.0]
     file["force"] = np.zeros((2, n, 3))
     for name in ("capillary_pressure", "force_scale", "largest_force", "first_period_end_time"):
         file["summary"].attrs[name] = 0.0
-few = settings("cycles=10", "time_step_safety=null")
+few = sets("cycles=10", "time_step_safety=null")
 for by, why in [("packing", "the packing lists no bond between its"),
                 ("touching", "no two touch of"), ("distance", "no two are within bond.gap of")]:
-    status, _, said = call("dem-replay", *few, *settings(f"bond.by={by}"), at("loose.h5"), "-o",
+    status, _, said = call("dem-replay", *few, *sets(f"bond.by={by}"), at("loose.h5"), "-o",
                            at("response.h5"))
     ok(status == 65 and len(said.splitlines()) == 1
        and f"dem-replay.bond.by: {why} {n} grains, so that none can break" in said
@@ -201,14 +197,14 @@ for by, why in [("packing", "the packing lists no bond between its"),
 for words, title in [(["bond.by=none"], "contacts alone, as asked for"),
                      (["bridges.volume=1e-18"], "bridges alone"),
                      (["bond.by=distance", f"bond.gap={1.01 * gaps[k]}"], "bonds over the gap")]:
-    status, _, said = call("dem-replay", *few, *settings(*words), at("loose.h5"), "-o",
+    status, _, said = call("dem-replay", *few, *sets(*words), at("loose.h5"), "-o",
                            at("response.h5"))
     ok(status == 0 and os.path.exists(at("response.h5")), title, said)
 
 # Held grains that nothing is bonded to.
 status, _, said = call("dem-replay", *few,
-                       *settings("bond.by=distance", f"bond.gap={np.sort(gaps)[20]}",
-                                 "held.grains=[0]"), at("loose.h5"), "-o", at("response.h5"))
+                       *sets("bond.by=distance", f"bond.gap={np.sort(gaps)[20]}",
+                             "held.grains=[0]"), at("loose.h5"), "-o", at("response.h5"))
 ok(status == 0 and f"of {n} grains to those that are held" in said,
    "that hardly a grain hangs on those held is said", said)
 
@@ -217,14 +213,14 @@ ok(status == 0 and f"of {n} grains to those that are held" in said,
 # Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.
 beads = ["count=300", "radius=5e-4", "method=deposition", "lower=[0,0,0]",
          "upper=[6.3e-3,6.3e-3,2.5e-2]"]
-made = run("pack", "-q", *settings(*beads))
+made = run("pack", "-q", *sets(*beads))
 open(at("beads.h5"), "wb").write(made)
 with h5py.File(at("beads.h5")) as file:
     beads_mm = text("beads-mm", 1e3 * file["particles/position"][:], 1e3 * file["particles/radius"][:])
 for stage, words in [("tessellate", []), ("merge-nodes", []), ("dry", ["step_interval=0.1"]),
                      ("force-protocol", ["force_scale=1"])]:
-    made = run(stage, "-q", *settings(*words), input=made)
-made = run("dem-replay", "-q", *settings("cycles=1", "most_cycles=1", "ramp=0"), input=made)
+    made = run(stage, "-q", *sets(*words), input=made)
+made = run("dem-replay", "-q", *sets("cycles=1", "most_cycles=1", "ramp=0"), input=made)
 open(at("beads-response.h5"), "wb").write(made)
 with h5py.File(at("beads-response.h5")) as file:
     measured = file["summary"].attrs["bond_number_grain"], file["summary"].attrs["bond_number_body"]

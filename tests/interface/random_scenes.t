@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, scratch
+from tap import BIN, done, ok, scratch, sets
 
 SCENES = int(os.environ.get("SCENES", 24))
 SEED = int(os.environ.get("SEED", 1))
@@ -139,7 +139,7 @@ def follow(seed, folder):
         return True
 
     chosen = chance.choice(PACKINGS) + ["bonds=none"] * (seed % 10 == 3)
-    grains = [word for each in chosen for word in ("--set", each)]
+    grains = sets(*chosen)
     stage("pack", "packing", words=[*grains, "--set", f"seed={seed % 2**32}"])
     if chance.random() < 0.5:
         stage("flow", "flow", "packing")

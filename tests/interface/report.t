@@ -25,10 +25,6 @@ folder = scratch()
 at = lambda name: os.path.join(folder.name, name)
 
 
-def settings(*words):
-    return [word for each in words for word in ("--set", each)]
-
-
 def report(*words):
     ended = subprocess.run([f"{BIN}/report", *words], capture_output=True, timeout=60)
     return ended.returncode, ended.stdout, ended.stderr.decode()

@@ -12,12 +12,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, WATER, done, ok, run, scratch
+from tap import BIN, WATER, done, ok, run, scratch, sets
 
 DIFFUSIVITY, GAS, FALL = 2.5685e-5, 8.31446261815324, -np.log1p(-2339 / 1e5)
 DENSITY = 1e5 * 0.01802 / (GAS * 293.15)
 WALLS = "-x", "+x", "-y", "+y", "-z", "+z"
-settings = lambda words: [word for s in words for word in ("--set", s)]
 
 
 def one_dimension(area, thickness):
@@ -54,16 +53,16 @@ with scratch() as folder:
 
     def make(name, pack, *tessellate, threshold=0.1, grains=None):
         """What the stages make, and the network as it is."""
-        run("pack", "--quiet", *settings(["bonds=none", *pack]), *(grains or []), "-o", at("p"))
-        run("tessellate", *settings(tessellate), at("p"), "-o", at("t"))
-        run("merge-nodes", *settings(["measure=mean_length", f"threshold={threshold}"]), at("t"),
+        run("pack", "--quiet", *sets("bonds=none", *pack), *(grains or []), "-o", at("p"))
+        run("tessellate", *sets(*tessellate), at("p"), "-o", at("t"))
+        run("merge-nodes", *sets("measure=mean_length", f"threshold={threshold}"), at("t"),
             "-o", at(name))
         return Network(at(name))
 
     def dry(name, *how):
-        run("dry", "--quiet", *settings(["throat_radius.distribution=normal",
-                                         "boundary_layer.mass_transfer=5.1",
-                                         "boundary_layer.layers=4", *WATER, *how]), at(name),
+        run("dry", "--quiet", *sets("throat_radius.distribution=normal",
+                                    "boundary_layer.mass_transfer=5.1",
+                                    "boundary_layer.layers=4", *WATER, *how), at(name),
             "-o", at("d"))
         file = h5py.File(at("d"))
         return {key: file[f"history/{key}"][:] for key in ("time", "saturation", "rate")} \
@@ -192,7 +191,7 @@ with scratch() as folder:
         same[extra, columns] = dry("n", "throat_radius.distribution=network", "liquid=immobile",
                                    f"boundary_layer.columns={columns}",
                                    'imposed_empty=["-x","+x","-y","+y","-z"]')
-        run("force-protocol", "--quiet", *settings(["steps=20"]), at("d"), "-o", at("f"))
+        run("force-protocol", "--quiet", *sets("steps=20"), at("d"), "-o", at("f"))
         with h5py.File(at("f")) as file:
             same[extra, columns]["force"] = file["force"][:]
             same[extra, columns]["auxiliary"] = "kind" in file["particles"]

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 RADIUS, SIDE, TENSION = 0.26e-6, 6, 0.07
 ENTRY = 2 * TENSION / ((math.sqrt(2) - 1) * RADIUS)
@@ -46,8 +46,7 @@ with scratch() as folder:
         return os.path.join(folder, name)
 
     def replay(name, *settings, packing="layer.h5"):
-        sets = [word for setting in settings for word in ("-s", setting)]
-        run("dem-replay", "-q", "-p", at("layer.json"), *sets, at(packing), "-o", at(name))
+        run("dem-replay", "-q", "-p", at("layer.json"), *sets(*settings), at(packing), "-o", at(name))
         return h5py.File(at(name))
 
     with open(at("layer.json"), "w") as file:
@@ -166,8 +165,7 @@ with scratch() as folder:
 
     # What a run says.
     def said(*settings):
-        sets = [word for setting in settings for word in ("-s", setting)]
-        process = subprocess.run([f"{BIN}/{layer[0]}", *layer[1:], *sets, *end],
+        process = subprocess.run([f"{BIN}/{layer[0]}", *layer[1:], *sets(*settings), *end],
                                  capture_output=True, text=True)
         return process.returncode, process.stderr
 

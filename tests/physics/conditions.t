@@ -11,9 +11,8 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
-settings = lambda words: [word for s in words for word in ("--set", s)]
 # IAPWS-95, Wagner and Pruss (2002), table 13.1, at 20 and 60 degrees Celsius.
 ROOM, WARM = 293.15, 333.15
 PRESSURE = {ROOM: 2339.3, WARM: 19946.0}
@@ -28,17 +27,17 @@ def says(*command):
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    run("pack", *settings(["counts=[4,4,4]", "radius=2.5e-7"]), "-o", at("p"))
+    run("pack", *sets("counts=[4,4,4]", "radius=2.5e-7"), "-o", at("p"))
     run("tessellate", at("p"), "-o", at("t"))
     run("merge-nodes", at("t"), "-o", at("n"))
 
     def dry(name, *how, quiet=True):
-        run("dry", *settings(["liquid=immobile", *how]), *["--quiet"] * quiet, at("n"), "-o", at(name))
+        run("dry", *sets("liquid=immobile", *how), *["--quiet"] * quiet, at("n"), "-o", at(name))
         with h5py.File(at(name)) as file:
             return file["history/rate"][0], dict(file["liquid"].attrs), dict(file["gas"].attrs)
 
     def forces(drying, *how):
-        run("force-protocol", "--quiet", *settings(how), at(drying), "-o", at("f"))
+        run("force-protocol", "--quiet", *sets(*how), at(drying), "-o", at("f"))
         with h5py.File(at("f")) as file:
             return (file["summary"].attrs["capillary_pressure"], dict(file["liquid"].attrs),
                     file.attrs["model"].decode())
@@ -61,7 +60,7 @@ with scratch() as folder:
        and "contact_angle" not in said, "who is told another tension than the drying says so", said)
     again = forces("other", "surface_tension=0.07274")
     ok("given: surface_tension = 0.07274 N/m, but that of the drying is 0.0223" in again[2], "in the model as well")
-    status, said = says("force-protocol", *settings(other), at("other"), "-o", at("x"))
+    status, said = says("force-protocol", *sets(*other), at("other"), "-o", at("x"))
     ok(status == 0 and said == "", "who is told the same says nothing", said)
     with h5py.File(at("water"), "a") as file:
         del file["liquid"]
@@ -88,7 +87,7 @@ with scratch() as folder:
        "a stage takes what all share")
     own = json.loads(run("dry", "-p", at("scene.json"), "--set", "contact_angle=10", "--parameters"))
     ok(own["contact_angle"] == 10, "and its own before that")
-    bridges = settings(["bridges.volume=1e-22", "bridges.contact_angle=0"])
+    bridges = sets("bridges.volume=1e-22", "bridges.contact_angle=0")
     status, said = says("dem-replay", "-p", at("scene.json"), *bridges, at("f"), "-o", at("r"))
     with h5py.File(at("r")) as file:
         model = file.attrs["model"].decode()
@@ -128,7 +127,7 @@ with scratch() as folder:
 
     # ---- what is asked about, and refused -------------------------------------------------
     def refused(title, line, *how):
-        status, said = says("dry", *settings(how), at("n"), "-o", at("z"))
+        status, said = says("dry", *sets(*how), at("n"), "-o", at("z"))
         ok(status == 65 and said.count("\n") == 1 and f"dry: dry.{line}" in said
            and not os.path.exists(at("z")), title, said)
 
@@ -147,18 +146,18 @@ with scratch() as folder:
             "relative_humidity=0.4", "air_vapour_pressure=900")
     status, said = says("invade", "--set", "temperature=25", at("n"), "-o", at("z"))
     ok(status == 65 and "invade.temperature: 25 K?" in said, "invade asks too", said)
-    status, said = says("bridge", *settings(["radius=1e-3", "volume=1e-12", "temperature=25"]))
+    status, said = says("bridge", *sets("radius=1e-3", "volume=1e-12", "temperature=25"))
     ok(status == 65 and "bridge.temperature: 25 K?" in said, "and bridge", said)
     all_given = ["fluid=other", "saturation_pressure=1e3", "diffusivity=1e-5", "molar_mass=0.1",
                  "liquid_density=1e3"]
-    status, said = says("dry", *settings(all_given), at("n"), "-o", at("z"))
+    status, said = says("dry", *sets(*all_given), at("n"), "-o", at("z"))
     ok(status == 0 and said == "", "another liquid that is described dries, without a word", said)
-    status, said = says("dry", *settings(["fluid=nmp", "temperature=353.15", "liquid_density=975"]),
+    status, said = says("dry", *sets("fluid=nmp", "temperature=353.15", "liquid_density=975"),
                         at("n"), "-o", at("z"))
     ok(status == 0 and said == "", "and NMP, once its density is given", said)
 
     # ---- what is given for another temperature ---------------------------------------------
-    status, said = says("dry", *settings(["temperature=353.15", "saturation_pressure=2339"]), at("n"),
+    status, said = says("dry", *sets("temperature=353.15", "saturation_pressure=2339"), at("n"),
                         "-o", at("z"))
     ok(status == 0 and "saturation_pressure = 2339 Pa was given, but water at 353.15 K has 4741" in said,
        "a saturation pressure that stays when it gets warm is told", said)

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 SOFT = "samples/soft-10x5x5.json"
 
@@ -25,8 +25,7 @@ with scratch() as folder:
     def replay(scale, *settings):
         forces = run("force-protocol", "-p", SOFT, "--set", "steps=40", "--set",
                      f"force_scale={scale}", input=drying)
-        run("dem-replay", "-p", SOFT, "--set", "cycles=2000", *(word for s in settings
-            for word in ("--set", s)), "-o", at("response"), input=forces)
+        run("dem-replay", "-p", SOFT, "--set", "cycles=2000", *sets(*settings), "-o", at("response"), input=forces)
         return json.loads(run("crackstats", at("response")))["mean"], h5py.File(at("response"))
 
     stats, response = replay(0.01)
@@ -74,8 +73,7 @@ with scratch() as folder:
                  input=run("dry", "-p", SOFT, input=column))
 
     def tried(forces, *settings):
-        words = [word for s in settings for word in ("--set", s)]
-        run = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, *words], input=forces,
+        run = subprocess.run([f"{BIN}/dem-replay", "-p", SOFT, *sets(*settings)], input=forces,
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60)
         return run.returncode, run.stderr.decode()
 
@@ -106,8 +104,7 @@ with scratch() as folder:
             capillary_pressure=0.0, force_scale=1.0, largest_force=1.0, first_period_end_time=0.0)
     soft = (f"{name}=0.1" for name in ("normal_stiffness", "shear_stiffness",
                                        "bond.normal_stiffness", "bond.shear_stiffness"))
-    words = [word for s in (*large, *soft, "bond.normal_strength=10", "bond.shear_strength=10")
-             for word in ("--set", s)]
+    words = sets(*large, *soft, "bond.normal_strength=10", "bond.shear_strength=10")
     pulled = subprocess.run([f"{BIN}/dem-replay", *words, at("pull"), "-o", at("far")],
                             stderr=subprocess.PIPE, text=True, timeout=60)
     ok(pulled.returncode == 0 and "come apart" not in pulled.stderr and
@@ -124,10 +121,10 @@ with scratch() as folder:
         tear["force"] = [[[0.0, 0.0, 0.0]] * 7 + [[1.0, 1.0, 1.0]]] * 2
         tear.create_group("summary").attrs.update(
             capillary_pressure=0.0, force_scale=1.0, largest_force=1.0, first_period_end_time=0.0)
-    words = [word for s in ("held.grains=[1,2,3,4,5,6]", "time_step_safety=null", "cycles=4000",
-                            "bond.normal_strength=0.1", "bond.shear_strength=0.1",
-                            "normal_stiffness=10", "shear_stiffness=10", "bond.normal_stiffness=10",
-                            "bond.shear_stiffness=10", "density=1e-3") for word in ("--set", s)]
+    words = sets("held.grains=[1,2,3,4,5,6]", "time_step_safety=null", "cycles=4000",
+                 "bond.normal_strength=0.1", "bond.shear_strength=0.1",
+                 "normal_stiffness=10", "shear_stiffness=10", "bond.normal_stiffness=10",
+                 "bond.shear_stiffness=10", "density=1e-3")
     for engine in "explicit", "quasi-static":
         torn = subprocess.run([f"{BIN}/dem-replay", *words, "--set", f"engine={engine}", at("tear"), "-o", at("torn")],
                               stderr=subprocess.PIPE, text=True, timeout=60)

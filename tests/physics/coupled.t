@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 SOFT = "samples/soft-10x5x5.json"
 COUNTS = ["--set", "counts=[5,4,4]"]
@@ -21,7 +21,7 @@ with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def stage(name, inputs, output, *settings):
-        run(name, "-p", SOFT, "--quiet", *(w for s in settings for w in ("--set", s)),
+        run(name, "-p", SOFT, "--quiet", *sets(*settings),
             *map(at, inputs), "-o", at(output))
         return h5py.File(at(output))
 
@@ -101,7 +101,7 @@ with scratch() as folder:
     # One that goes on, stopped and gone on with.
     uneven = ["keep_state=true", "bond.contact_strength=3e-8", *uneven]
     early = stage("dem-replay", ["early"], "early-uneven", "cycles=100", *uneven)
-    command = [f"{BIN}/dem-replay", "-p", SOFT, "--quiet", *(w for s in [*uneven, "cycles=10000"] for w in ("--set", s)),
+    command = [f"{BIN}/dem-replay", "-p", SOFT, "--quiet", *sets(*uneven, "cycles=10000"),
                at("late"), at("early-uneven")]
     began = time.monotonic()
     subprocess.run([*command, "-o", at("unstopped")], check=True)

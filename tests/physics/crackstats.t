@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch
+from tap import BIN, SCENE, done, ok, run, scratch, sets
 
 
 def crackstats(*arguments):
@@ -127,7 +127,7 @@ with scratch() as folder:
     def in_haste(tolerance):
         words = ["engine=explicit", "cycles=100", "most_cycles=1", "unsettled=count", "ramp=0",
                  "density_scaling=false", "bond.normal_strength=3e3", f"tolerance={tolerance}"]
-        run("dem-replay", "-q", "-p", SCENE, *[w for word in words for w in ("--set", word)], at("forces"),
+        run("dem-replay", "-q", "-p", SCENE, *sets(*words), at("forces"),
             "-o", at("hurried"))
         with h5py.File(at("hurried")) as file:
             loaded = file["history/saturation"][:] > 0

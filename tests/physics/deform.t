@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 SOFT = "samples/soft-10x5x5.json"
 DATASETS = ["nodes/position", "nodes/kind", "throats/nodes", "throats/radius", "throats/length",
@@ -24,14 +24,13 @@ with scratch() as folder:
 
     def make(name, pack, tessellate=(), merge=None):
         """A packing, its network, and a response to lay displacements into."""
-        sets = lambda words: [w for word in words for w in ("--set", word)]
-        run("pack", "--quiet", *sets(pack), "-o", at("packing"))
-        run("tessellate", *sets(tessellate), at("packing"), "-o", at(name))
+        run("pack", "--quiet", *sets(*pack), "-o", at("packing"))
+        run("tessellate", *sets(*tessellate), at("packing"), "-o", at(name))
         if merge is not None:
-            run("merge-nodes", *sets(merge), at(name), "-o", at(name))
+            run("merge-nodes", *sets(*merge), at(name), "-o", at(name))
         plain = run("merge-nodes", input=run("tessellate", at("packing")))
         forces = run("force-protocol", "--set", "steps=2", input=run("dry", "--quiet", input=plain))
-        run("dem-replay", "--quiet", *sets(["cycles=1", "snapshots=[1]", "bond.by=none"]), "-o", at("response"), input=forces)
+        run("dem-replay", "--quiet", *sets("cycles=1", "snapshots=[1]", "bond.by=none"), "-o", at("response"), input=forces)
         return h5py.File(at("packing"))
 
     def lay(displacement):
@@ -284,7 +283,7 @@ with scratch() as folder:
     cylinder = ["--set", "domain.shape=cylinder", "--set", "domain.height=5e-6"]
     sphere = ["--set", "domain.shape=sphere"]
     wide, cube = ["--set", "domain.radius=2.5e-6"], "upper=[5e-6,5e-6,5e-6]"
-    words = lambda text: [w for word in text.split() for w in ("--set", word)]
+    words = lambda text: sets(*text.split())
     bodies = [
         ("a cylinder", wide + cylinder, []), ("a sphere", wide + sphere, []), ("a disc", wide + sphere, layer),
         ("a ring", words("domain.shape=ring domain.radius=3e-6 domain.inner_radius=1.2e-6 domain.height=4e-6"), []),

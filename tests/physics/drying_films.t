@@ -12,7 +12,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from ring_books import stores
-from tap import BIN, WATER, done, ok, run, scratch
+from tap import BIN, WATER, done, ok, run, scratch, sets
 
 R = 1e-6
 folder = scratch()
@@ -22,20 +22,16 @@ def at(name):
     return os.path.join(folder.name, name)
 
 
-def words(settings):
-    return [w for s in settings for w in ("-s", s)]
-
-
 def network(name, radius):
-    run("pack", "-q", *words(["method=soft_spheres", "count=60", f"radius={radius}", "sizes.distribution=normal",
-                              "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
-    run("tessellate", "-q", *words(["throat_volume=void", "throat_radius=entry"]), at("packing"), "-o", at("diagram"))
+    run("pack", "-q", *sets("method=soft_spheres", "count=60", f"radius={radius}", "sizes.distribution=normal",
+                            "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"), "-o", at("packing"))
+    run("tessellate", "-q", *sets("throat_volume=void", "throat_radius=entry"), at("packing"), "-o", at("diagram"))
     run("merge-nodes", "-q", at("diagram"), "-o", at(name))
     return at(name)
 
 
 def dry(path, *settings, name="drying", options=()):
-    run("dry", "-q", *options, *words(["step_interval=0", *WATER, *settings]), path, "-o", at(name))
+    run("dry", "-q", *options, *sets("step_interval=0", *WATER, *settings), path, "-o", at(name))
     return h5py.File(at(name))
 
 
@@ -140,7 +136,7 @@ for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is
                        (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved"),
                        (["gravity=9.81"], "gravity: must be 0 with rings=films"),
                        (["films.half_angle=90"], "films.half_angle"), (["films.conductance=-1"], "films.conductance")]:
-    refused = subprocess.run([f"{BIN}/dry", "-q", *words(["rings=films", *settings]), net], capture_output=True, text=True, check=False)
+    refused = subprocess.run([f"{BIN}/dry", "-q", *sets("rings=films", *settings), net], capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
 refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=films", net, "-o", at("no")],
                          capture_output=True, text=True, check=False)

@@ -9,23 +9,22 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import WATER, done, ok, run, scratch
+from tap import WATER, done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    settings = lambda words: [word for s in words for word in ("--set", s)]
     gas, fall = 8.31446261815324, np.log(1e5 / (1e5 - 2339))
 
     def network(name, centres, radii, box, periodic, *how):
         np.savetxt(at(name + ".txt"), np.column_stack([centres, radii]), fmt="%.17g")
         lower, upper = [0.0, 0.0, 0.0], list(map(float, box))
         sides = "[" + ",".join(["false", "true"][p] for p in periodic) + "]"
-        run("pack", *settings(["method=import", f"lower={lower}", f"upper={upper}",
-                               f"periodic={sides}"]), at(name + ".txt"), "-o", at(name + ".p"))
-        run("tessellate", *settings(how), at(name + ".p"), "-o", at(name + ".n"))
+        run("pack", *sets("method=import", f"lower={lower}", f"upper={upper}",
+                          f"periodic={sides}"), at(name + ".txt"), "-o", at(name + ".p"))
+        run("tessellate", *sets(*how), at(name + ".p"), "-o", at(name + ".n"))
 
     def dry(name, *how):
-        run("dry", *settings(["boundary_layer.mass_transfer=5.1", *WATER, *how]), at(name + ".n"),
+        run("dry", *sets("boundary_layer.mass_transfer=5.1", *WATER, *how), at(name + ".n"),
             "-o", at(name + ".d"))
         file = h5py.File(at(name + ".d"))
         return {k: file[f"history/{k}"][:] for k in ("time", "saturation", "rate")}

@@ -13,7 +13,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from ring_books import stores
-from tap import BIN, WATER, done, ok, run, scratch
+from tap import BIN, WATER, done, ok, run, scratch, sets
 
 R = 1e-6
 folder = scratch()
@@ -23,26 +23,22 @@ def at(name):
     return os.path.join(folder.name, name)
 
 
-def words(settings):
-    return [w for s in settings for w in ("-s", s)]
-
-
 def network(packing, name="network"):
-    run("tessellate", "-q", *words(["throat_volume=void", "throat_radius=entry"]), packing, "-o", at("diagram"))
+    run("tessellate", "-q", *sets("throat_volume=void", "throat_radius=entry"), packing, "-o", at("diagram"))
     run("merge-nodes", "-q", at("diagram"), "-o", at(name))
     return at(name)
 
 
 def dry(path, *settings, name="drying"):
-    run("dry", "-q", *words(["step_interval=0", *settings]), path, "-o", at(name))
+    run("dry", "-q", *sets("step_interval=0", *settings), path, "-o", at(name))
     return h5py.File(at(name))
 
 
 def lattice(radius):
     grid = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
     np.savetxt(at("lattice.txt"), np.column_stack([(2 * grid + 1) * R, np.full(64, radius)]), fmt="%.17g")
-    run("pack", "-q", *words(["method=import", "lower=[0,0,0]", f"upper={[8 * R] * 3}", "bonds=none", "check=none",
-                              "periodic=[true,true,false]"]), at("lattice.txt"), "-o", at("lattice"))
+    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={[8 * R] * 3}", "bonds=none", "check=none",
+                            "periodic=[true,true,false]"), at("lattice.txt"), "-o", at("lattice"))
     return at("lattice")
 
 
@@ -57,8 +53,8 @@ def books(file):
 
 # ---- the books of random packings ---------------------------------------------------------
 
-run("pack", "-q", *words(["method=soft_spheres", "count=100", f"radius={R}", "sizes.distribution=normal",
-                          "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
+run("pack", "-q", *sets("method=soft_spheres", "count=100", f"radius={R}", "sizes.distribution=normal",
+                        "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"), "-o", at("packing"))
 net = network(at("packing"))
 for settings in ([], ["liquid=immobile"], ["contact_angle=50"], ["gravity=9.81"],
                  ["stop_saturation=0.3"], ["start_saturation=0.6"], ["air_vapour_pressure=2338.99"]):
@@ -86,11 +82,11 @@ with dry(net, "rings=joined", *WATER) as file:
     ok((nodes[fed] == 1).all() and abs(summary["residual_saturation"] * void / summary["ring_volume"] - 1) < 1e-12,
        "films feed all rings until the last throat has emptied", summary)
     order = file["events/throat"][:]
-    run("invade", "-q", *words(["trapping=false"]), net, "-o", at("invasion"))
+    run("invade", "-q", *sets("trapping=false"), net, "-o", at("invasion"))
     with h5py.File(at("invasion")) as invasion:
         ok(np.array_equal(order, invasion["events/throat"][:]), "in the order of invasion without trapping")
 ok(0 < inviscid[2] < 0.2, "some is left when the last throat has emptied", inviscid[2])
-run("dry", "-q", "--threads", "2", *words(["step_interval=0", "rings=isolated", *WATER]), net, "-o", at("two"))
+run("dry", "-q", "--threads", "2", *sets("step_interval=0", "rings=isolated", *WATER), net, "-o", at("two"))
 dry(net, "rings=isolated", *WATER).close()
 ok(filecmp.cmp(at("drying"), at("two"), shallow=False), "one thread and two give the same bytes")
 
@@ -100,8 +96,8 @@ for radius, angle, what in (R, 0, "touch"), (1.02 * R, 30, "overlap"), (0.98 * R
     packing = lattice(radius)
     with dry(network(packing), "rings=isolated", f"contact_angle={angle}", *WATER) as file:
         suction = 2 * 0.07274 * np.cos(np.radians(angle)) / file["throats/radius"][:].min()
-        exact = json.loads(run("rings", "-q", *words(["fluid=other", "surface_tension=0.07274", f"contact_angle={angle}",
-                                                      f"suctions=[{float(suction)!r}]"]), packing))
+        exact = json.loads(run("rings", "-q", *sets("fluid=other", "surface_tension=0.07274", f"contact_angle={angle}",
+                                                    f"suctions=[{float(suction)!r}]"), packing))
         got = file["summary"].attrs["ring_volume"]
         ok(len(file["rings/face"]) == exact["rings"][0] and abs(got / exact["volume"][0] - 1) < 1e-9,
            f"grains that {what}: throats leave the rings of `rings`", (got, exact["volume"]))
@@ -128,7 +124,7 @@ for liquid in "inviscid", "immobile":
 for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is viscous"),
                        (["rings=joined", "liquid=immobile"], "rings: must not be joined where liquid is immobile"),
                        (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved")]:
-    refused = subprocess.run([f"{BIN}/dry", "-q", *words(["rings=isolated", *settings]), net], capture_output=True, text=True, check=False)
+    refused = subprocess.run([f"{BIN}/dry", "-q", *sets("rings=isolated", *settings), net], capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
 refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=isolated", net, "-o", at("no")],
                          capture_output=True, text=True, check=False)

@@ -12,32 +12,28 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 R = 2.5e-7
 SIDES = 'imposed_empty=["-x","+x","-y","+y","-z"]'
 random = np.random.default_rng(11)
 
 
-def settings(words):
-    return [word for s in words for word in ("--set", s)]
-
-
 def drying(name, centres, radii, box, how, dry, merge=0.0, periodic=(0, 0, 0), lower=np.zeros(3)):
     """From grains to their drying."""
     np.savetxt("grains", np.column_stack([centres, radii]), fmt="%.17g")
     sides = "[" + ",".join(["false", "true"][p] for p in periodic) + "]"
-    run("pack", *settings(["method=import", f"lower={[float(x) for x in lower]}",
-                           f"upper={[float(x) for x in lower + np.array(box)]}",
-                           f"periodic={sides}"]), "--quiet", "grains", "-o", "p")
-    run("tessellate", *settings(how), "p", "-o", "t")
+    run("pack", *sets("method=import", f"lower={[float(x) for x in lower]}",
+                      f"upper={[float(x) for x in lower + np.array(box)]}",
+                      f"periodic={sides}"), "--quiet", "grains", "-o", "p")
+    run("tessellate", *sets(*how), "p", "-o", "t")
     how = ["measure=fraction", f"threshold={merge}"] if merge else []
-    run("merge-nodes", *settings(how), "t", "-o", "n")
-    run("dry", *settings(["surface_tension=0.07274", *dry]), "--quiet", "n", "-o", name)
+    run("merge-nodes", *sets(*how), "t", "-o", "n")
+    run("dry", *sets("surface_tension=0.07274", *dry), "--quiet", "n", "-o", name)
 
 
 def forces(name, *how, steps=40):
-    run("force-protocol", "--quiet", *settings([f"steps={steps}", *how]), name, "-o", "f")
+    run("force-protocol", "--quiet", *sets(f"steps={steps}", *how), name, "-o", "f")
     with h5py.File("f") as file:
         return file["force"][:], file["time"][:], dict(file["summary"].attrs)
 
@@ -330,10 +326,9 @@ def rings():
         centres = np.array([box / 2, box / 2])
         centres[1, 2] += radii.sum()
         drying("d", centres, radii, box, [], ["liquid=immobile"])
-        exact = json.loads(run("bridge", *settings(
-            [f"radius={radii[0]}", f"other_radius={radii[1]}", "separations=[0]",
-             f"volume={1e-3 * (2 * radii.prod() / radii.sum())**3}",
-             "contact_angle=20", "surface_tension=0.07274"])))["force"][0]
+        exact = json.loads(run("bridge", *sets(f"radius={radii[0]}", f"other_radius={radii[1]}", "separations=[0]",
+                                               f"volume={1e-3 * (2 * radii.prod() / radii.sum())**3}",
+                                               "contact_angle=20", "surface_tension=0.07274")))["force"][0]
         force, _, summary = forces("d", "rings.left=volume", "contact_angle=20")
         error = abs(force[-1] / exact - [[0, 0, 1], [0, 0, -1]]).max()
         ok(error < 1e-6, f"1:{1 / small:g}: what is left in the end is the exact bridge", error)
@@ -344,8 +339,7 @@ def rings():
     # in a layer, where the throat between two grains is the face
     drying("d", [[2 * R, R, 2 * R], [4 * R, R, 2 * R]], [R, R], (6 * R, 2 * R, 4 * R),
            ["dimensions=2"], ["liquid=immobile", 'imposed_empty=["-x","+x","-z"]'])
-    exact = json.loads(run("bridge", *settings(
-        [f"radius={R}", "separations=[0]", f"volume={1e-3 * R**3}", "surface_tension=0.07274"])))
+    exact = json.loads(run("bridge", *sets(f"radius={R}", "separations=[0]", f"volume={1e-3 * R**3}", "surface_tension=0.07274")))
     last = forces("d", "rings.left=volume")[0][-1] / exact["force"][0]
     ok(abs(last - [[1, 0, 0], [-1, 0, 0]]).max() < 1e-6, "and between two grains of a layer", last)
     with h5py.File("d") as file:
@@ -397,9 +391,8 @@ def threads():
            "snapshot_interval=0.05"], merge=0.1)
     both = []
     for n in 1, 2:
-        run("force-protocol", "--threads", str(n), *settings(
-            ["pressure=field", "contact_angle=30", "rings.left=suction", "form=faces",
-             "largest_change=0.1"]), "d", "-o", f"f{n}")
+        run("force-protocol", "--threads", str(n), *sets("pressure=field", "contact_angle=30", "rings.left=suction", "form=faces",
+                                                         "largest_change=0.1"), "d", "-o", f"f{n}")
         both.append(open(f"f{n}", "rb").read())
     ok(both[0] == both[1], "viscous liquid, everything on: the same bytes on two threads")
     with h5py.File("f1") as file:
@@ -446,9 +439,8 @@ def overlaps():
     drying("d", (centres + 0.5) * a, np.full(27, 1.1 * R), (3 * a,) * 3, [],
            ["liquid=inviscid", SIDES])
     force, _, summary = forces("d", "rings.left=volume", "form=faces", "contact_angle=20")
-    exact = json.loads(run("bridge", *settings(
-        [f"radius={1.1 * R}", "separations=[0]", f"volume={1e-3 * (1.1 * R)**3}",
-         "contact_angle=20", "surface_tension=0.07274"])))["force"][0]
+    exact = json.loads(run("bridge", *sets(f"radius={1.1 * R}", "separations=[0]", f"volume={1e-3 * (1.1 * R)**3}",
+                                           "contact_angle=20", "surface_tension=0.07274")))["force"][0]
     inner = abs(force[0, 13]).max() / (summary["capillary_pressure"] * R**2)
     ok(np.isfinite(force).all() and inner < 1e-14,
        "grains that overlap: none on the inner one while all is wet", inner)

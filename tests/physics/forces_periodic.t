@@ -9,11 +9,10 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    settings = lambda words: [word for s in words for word in ("--set", s)]
     steps = 40
 
     every = ["form=faces", "contact_angle=30", "pressure=clusters", "rings.left=suction"]
@@ -21,12 +20,12 @@ with scratch() as folder:
     def forces(name, centres, radii, box, periodic, how, also=()):
         np.savetxt(at("grains"), np.column_stack([centres, radii]), fmt="%.17g")
         sides = "[" + ",".join(["false", "true"][p] for p in periodic) + "]"
-        run("pack", *settings(["method=import", "lower=[0,0,0]", f"upper={list(map(float, box))}",
-                               f"periodic={sides}"]), "--quiet", at("grains"), "-o", at("p"))
-        run("tessellate", *settings(how), at("p"), "-o", at("t"))
-        run("merge-nodes", *settings(["measure=fraction", "threshold=0.1"]), at("t"), "-o", at("n"))
-        run("dry", *settings(["liquid=immobile"]), at("n"), "-o", at(name + ".d"))
-        run("force-protocol", *settings([f"steps={steps}", "open_surface=pulls", *also]),
+        run("pack", *sets("method=import", "lower=[0,0,0]", f"upper={list(map(float, box))}",
+                          f"periodic={sides}"), "--quiet", at("grains"), "-o", at("p"))
+        run("tessellate", *sets(*how), at("p"), "-o", at("t"))
+        run("merge-nodes", *sets("measure=fraction", "threshold=0.1"), at("t"), "-o", at("n"))
+        run("dry", *sets("liquid=immobile"), at("n"), "-o", at(name + ".d"))
+        run("force-protocol", *sets(f"steps={steps}", "open_surface=pulls", *also),
             at(name + ".d"), "-o", at(name))
         file = h5py.File(at(name))
         return file["force"][:], file["summary"].attrs["capillary_pressure"]

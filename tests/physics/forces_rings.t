@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, WATER, done, ok, run, scratch
+from tap import BIN, WATER, done, ok, run, scratch, sets
 
 R, TENSION = 1e-6, 0.07274
 folder = scratch()
@@ -22,21 +22,17 @@ def at(name):
     return os.path.join(folder.name, name)
 
 
-def words(settings):
-    return [w for s in settings for w in ("-s", s)]
-
-
 def dried(packing, *settings):
-    run("tessellate", "-q", *words(["throat_volume=void", "throat_radius=entry"]), packing, "-o", at("diagram"))
+    run("tessellate", "-q", *sets("throat_volume=void", "throat_radius=entry"), packing, "-o", at("diagram"))
     run("merge-nodes", "-q", at("diagram"), "-o", at("network"))
-    run("dry", "-q", *words([*WATER, "step_interval=0", *settings]), at("network"), "-o", at("drying"))
+    run("dry", "-q", *sets(*WATER, "step_interval=0", *settings), at("network"), "-o", at("drying"))
 
 
 def added(times, *settings):
     """Times, and what rings add to the force on each grain then."""
     force = []
     for left in "none", "drying":
-        run("force-protocol", "-q", *words([f"rings.left={left}", f"steps={times}", *settings]), at("drying"), "-o", at("forces-" + left))
+        run("force-protocol", "-q", *sets(f"rings.left={left}", f"steps={times}", *settings), at("drying"), "-o", at("forces-" + left))
         with h5py.File(at("forces-" + left)) as file:
             force.append(file["force"][:])
             time = file["time"][:]
@@ -64,8 +60,8 @@ def volumes(time):
 
 
 def exact(volume, gap, angle):
-    said = json.loads(run("bridge", "-q", *words([f"radius={R}", f"volume={float(volume)!r}", "fluid=other", f"surface_tension={TENSION}",
-                                                  f"contact_angle={angle}", f"separations=[{float(gap)!r}]"])))
+    said = json.loads(run("bridge", "-q", *sets(f"radius={R}", f"volume={float(volume)!r}", "fluid=other", f"surface_tension={TENSION}",
+                                                f"contact_angle={angle}", f"separations=[{float(gap)!r}]")))
     return said["force"][0]
 
 
@@ -74,8 +70,8 @@ def exact(volume, gap, angle):
 grid = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
 for radius, angle in (R, 0), (R, 50), (0.985 * R, 10):
     np.savetxt(at("lattice.txt"), np.column_stack([(2 * grid + 1) * R, np.full(64, radius)]), fmt="%.17g")
-    run("pack", "-q", *words(["method=import", "lower=[0,0,0]", f"upper={[8 * R] * 3}", "bonds=none", "check=none",
-                              "periodic=[true,true,false]"]), at("lattice.txt"), "-o", at("packing"))
+    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={[8 * R] * 3}", "bonds=none", "check=none",
+                            "periodic=[true,true,false]"), at("lattice.txt"), "-o", at("packing"))
     dried(at("packing"), "rings=isolated", f"contact_angle={angle}")
     time, force, _ = added(60)
     worst, pulls = 0, 0
@@ -93,8 +89,8 @@ for radius, angle in (R, 0), (R, 50), (0.985 * R, 10):
 
 # ---- a random packing ---------------------------------------------------------------------
 
-run("pack", "-q", *words(["method=soft_spheres", "count=60", f"radius={R}",
-                          "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
+run("pack", "-q", *sets("method=soft_spheres", "count=60", f"radius={R}",
+                        "periodic=[true,true,false]", "bonds=none"), "-o", at("packing"))
 for supply in "isolated", "joined":
     dried(at("packing"), f"rings={supply}")
     time, force, _ = added(30)
@@ -102,11 +98,11 @@ for supply in "isolated", "joined":
     ok((np.linalg.norm(force.sum(axis=1), axis=1) <= 1e-12 * size.max()).all() and size.max() > 0 and size[0] == 0 and size[-1] == 0,
        f"{supply}: rings pull grains in pairs, from when gas comes to when they are dry", size)
 for threads in "1", "2":
-    run("force-protocol", "-q", "--threads", threads, *words(["rings.left=drying", "largest_change=0.1"]), at("drying"), "-o", at("t" + threads))
+    run("force-protocol", "-q", "--threads", threads, *sets("rings.left=drying", "largest_change=0.1"), at("drying"), "-o", at("t" + threads))
 ok(filecmp.cmp(at("t1"), at("t2"), shallow=False), "one thread and two give the same bytes")
 
 dried(at("packing"))
-refused = subprocess.run([f"{BIN}/force-protocol", "-q", *words(["rings.left=drying"]), at("drying")], capture_output=True, text=True, check=False)
+refused = subprocess.run([f"{BIN}/force-protocol", "-q", *sets("rings.left=drying"), at("drying")], capture_output=True, text=True, check=False)
 ok(refused.returncode == 65 and "rings.left=drying needs it: dry with rings=isolated, joined or films" in refused.stderr,
    "a drying without rings is refused", refused.stderr)
 done()

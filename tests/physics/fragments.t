@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch
+from tap import SCENE, done, ok, run, scratch, sets
 
 RADIUS = 250e-9
 NECK = 0.5858 * RADIUS
@@ -20,7 +20,6 @@ COMMON = ("support=fixed", "friction=0.5", "cycles=2000", "ramp=0", "tolerance=1
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    words = lambda settings: [word for s in settings for word in ("--set", s)]
     column = run("pack", "-p", SCENE, "--set", "counts=[1,1,3]")
     with open(at("column"), "wb") as file:
         file.write(column)
@@ -46,7 +45,7 @@ with scratch() as folder:
                 file[key].attrs["units"] = model[key].attrs["units"]
 
     def replay(name, *settings):
-        run("dem-replay", "-q", "-p", SCENE, *words((*COMMON, *settings)), at(name), "-o",
+        run("dem-replay", "-q", "-p", SCENE, *sets(*COMMON, *settings), at(name), "-o",
             at("response"))
         return h5py.File(at("response"))
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch
+from tap import BIN, done, ok, read, run, scratch, sets
 
 TENSION, DENSITY = 0.07274, 998.2
 
@@ -177,8 +177,7 @@ with scratch() as folder:
        "the same bytes through a pipe and by two threads")
 
     def refused(title, says, *settings):
-        words = [word for setting in settings for word in ("--set", setting)]
-        ended = subprocess.run([f"{BIN}/invade", *words, at("network.h5"), "-o", at("none.h5")],
+        ended = subprocess.run([f"{BIN}/invade", *sets(*settings), at("network.h5"), "-o", at("none.h5")],
                                capture_output=True, text=True)
         ok(ended.returncode == 65 and says in ended.stderr and ended.stderr.count("\n") == 1
            and not os.path.exists(at("none.h5")), title, ended.stderr)

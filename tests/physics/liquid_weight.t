@@ -10,26 +10,25 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 G, RHO = 9.81, 998.2
 CLOSED = 'imposed_empty=["-x","+x","-y","+y","-z"]'
-words = lambda settings: [word for s in settings for word in ("--set", s)]
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def network(name, pack, volume="void", *merge):
-        made = run("pack", "-q", *words(pack))
-        made = run("tessellate", *words((f"throat_volume={volume}",)), input=made)
-        run("merge-nodes", *words(merge), "-o", at(name), input=made)
+        made = run("pack", "-q", *sets(*pack))
+        made = run("tessellate", *sets(f"throat_volume={volume}"), input=made)
+        run("merge-nodes", *sets(*merge), "-o", at(name), input=made)
 
     def dry(name, *settings, output="drying"):
-        run("dry", "-q", *words((CLOSED, f"liquid_density={RHO}", *settings)), at(name), "-o", at(output))
+        run("dry", "-q", *sets(CLOSED, f"liquid_density={RHO}", *settings), at(name), "-o", at(output))
         return h5py.File(at(output))
 
     def forces(*settings, input="drying", output="forces"):
-        run("force-protocol", *words(("steps=9", *settings)), at(input), "-o", at(output))
+        run("force-protocol", *sets("steps=9", *settings), at(input), "-o", at(output))
         return h5py.File(at(output))
 
     def liquid(drying, times):
@@ -126,7 +125,7 @@ with scratch() as folder:
               "bond.gap=0.05", "bond.normal_stiffness=1e13", "bond.shear_stiffness=1e13",
               "bond.normal_strength=1e9", "bond.shear_strength=1e9", "friction=0",
               "held.lower=[-1,-1,-1]", "held.upper=[1,1,2e-3]")
-    run("dem-replay", "-q", *words((*sturdy, "engine=quasi-static")), at("forces"), "-o", at("response"))
+    run("dem-replay", "-q", *sets(*sturdy, "engine=quasi-static"), at("forces"), "-o", at("response"))
     response = h5py.File(at("response"))
     grains = 2500 * 4 / 3 * np.pi * (weighed["particles/radius"][:]**3).sum()
     wanted = G * (grains + liquid(drying, weighed["time"][:]))
@@ -138,7 +137,7 @@ with scratch() as folder:
     ok(abs(ratio / wanted[0] - 1) < 1e-12 and response["summary"].attrs["gravity"] == G
        and "weight of the grains and the liquid" in str(response.attrs["model"]),
        "gravity is that of the forces unless told otherwise", ratio / wanted[0])
-    said = subprocess.run([f"{BIN}/dem-replay", *words((*sturdy, "engine=quasi-static", "gravity=1.62")),
+    said = subprocess.run([f"{BIN}/dem-replay", *sets(*sturdy, "engine=quasi-static", "gravity=1.62"),
                            at("forces"), "-o", at("response")], capture_output=True, text=True)
     ok(said.returncode == 0 and "gravity = 1.62 m/s2 for the grains, but 9.81 for the liquid" in said.stderr,
        "another gravity for the grains is said", said.stderr)

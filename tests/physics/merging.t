@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch
+from tap import BIN, done, ok, read, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
@@ -20,8 +20,7 @@ with scratch() as folder:
     radius = 250e-9
 
     def merge(origin, name, *settings):
-        words = [word for s in settings for word in ("--set", s)]
-        run("merge-nodes", *words, at(origin), "--report", at("report.json"), "-o", at(name))
+        run("merge-nodes", *sets(*settings), at(origin), "--report", at("report.json"), "-o", at(name))
         return open_(name), json.loads(read(at("report.json")))
 
     run("pack", "--set", "method=poisson", "--set", "count=300", "--set", "seed=7",

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 root = np.sqrt
 hcp_atoms = [(0, 0, 0), (1/2, 1/2, 0), (1/2, 1/6, 1/2), (0, 2/3, 1/2)]
@@ -36,10 +36,6 @@ lattices = {
                   [(octahedral, tetrahedral, root(3/2), narrow),
                    (octahedral, octahedral, 2 * root(2/3), narrow),
                    (tetrahedral, tetrahedral, root(2/3), narrow)])}
-
-
-def settings(words):
-    return [word for s in words for word in ("--set", s)]
 
 
 def one_way(i, j, image):
@@ -88,15 +84,15 @@ with scratch() as folder:
     def network(centres, radii, box, periodic, tessellate=(), merge=()):
         np.savetxt(at("grains"), np.column_stack([centres, radii]), fmt="%.17g")
         sides = "[" + ",".join(["false", "true"][int(p)] for p in periodic) + "]"
-        run("pack", *settings(["method=import", "lower=[0,0,0]", f"upper={list(map(float, box))}",
-                               f"periodic={sides}"]), "--quiet", at("grains"), "-o", at("packing"))
-        run("tessellate", *settings(tessellate), at("packing"), "-o", at("before"))
-        run("merge-nodes", *settings(merge), at("before"), "-o", at("after"))
+        run("pack", *sets("method=import", "lower=[0,0,0]", f"upper={list(map(float, box))}",
+                          f"periodic={sides}"), "--quiet", at("grains"), "-o", at("packing"))
+        run("tessellate", *sets(*tessellate), at("packing"), "-o", at("before"))
+        run("merge-nodes", *sets(*merge), at("before"), "-o", at("after"))
         return h5py.File(at("before")), h5py.File(at("after"))
 
     def again(*merge):
         """Whether merging once more changes nothing."""
-        run("merge-nodes", *settings(merge), at("after"), "-o", at("twice"))
+        run("merge-nodes", *sets(*merge), at("after"), "-o", at("twice"))
         with h5py.File(at("after")) as one, h5py.File(at("twice")) as other:
             return all(one[f"{g}/{n}"][()].tobytes() == other[f"{g}/{n}"][()].tobytes()
                        for g in ("nodes", "throats", "faces") for n in one[g])

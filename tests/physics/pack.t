@@ -8,14 +8,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def pack(name, *settings, **more):
-        words = [word for s in settings for word in ("--set", s)]
-        run("pack", *words, *more.get("inputs", []), "-o", at(name))
+        run("pack", *sets(*settings), *more.get("inputs", []), "-o", at(name))
         return h5py.File(at(name))
 
     cubic = pack("cubic", "counts=[3,4,5]", "radius=1e-3")

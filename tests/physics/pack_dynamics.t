@@ -24,8 +24,7 @@ folder = scratch()
 
 
 def pack(path, *settings, options=(), inputs=()):
-    words = [word for s in settings for word in ("--set", s)]
-    run("pack", "-q", *options, "--set", "bonds=none", *words, *inputs, "-o", path,
+    run("pack", "-q", *options, "--set", "bonds=none", *sets(*settings), *inputs, "-o", path,
         "--report", path + ".json")
 
 

@@ -11,17 +11,16 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 ALL = "periodic=[true,true,true]"
 
 
 class Packing:
     def __init__(self, *settings, inputs=()):
-        words = [word for s in settings for word in ("--set", s)]
         with scratch() as folder:
             path = os.path.join(folder, "packing")
-            run("pack", "-q", *words, *inputs, "-o", path)
+            run("pack", "-q", *sets(*settings), *inputs, "-o", path)
             with h5py.File(path) as file:
                 self.x, self.r = file["particles/position"][:], file["particles/radius"][:]
                 self.lower, self.upper = file["domain/lower"][:], file["domain/upper"][:]

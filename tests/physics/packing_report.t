@@ -11,14 +11,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def pack(name, *settings, inputs=()):
-        words = [word for s in settings for word in ("--set", s)]
-        run("pack", *words, *inputs, "-o", at(name), "--report", at(name + ".json"))
+        run("pack", *sets(*settings), *inputs, "-o", at(name), "--report", at(name + ".json"))
         with open(at(name + ".json")) as file:
             return json.load(file), h5py.File(at(name))
 

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 
 def renumber(source, target, random):
@@ -46,7 +46,7 @@ with scratch() as folder:
        f"{len(different)} of {len(radius)}")
 
     def events(stage, name, *settings):
-        run(stage, "--quiet", *[w for s in settings for w in ("--set", s)], at(name),
+        run(stage, "--quiet", *sets(*settings), at(name),
             "-o", at("out.h5"))
         with h5py.File(at("out.h5")) as file:
             value = file["events/time" if stage == "dry" else "events/pressure"]

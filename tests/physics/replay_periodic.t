@@ -10,16 +10,15 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import CYCLES, SCENE, done, ok, run, scratch
+from tap import CYCLES, SCENE, done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    settings = lambda words: [word for s in words for word in ("--set", s)]
-    run("pack", "-p", SCENE, *settings(["periodic=[true,true,false]", "counts=[4,4,5]"]), "-o", at("p"))
+    run("pack", "-p", SCENE, *sets("periodic=[true,true,false]", "counts=[4,4,5]"), "-o", at("p"))
     run("tessellate", "-p", SCENE, at("p"), "-o", at("t"))
     run("merge-nodes", "-p", SCENE, at("t"), "-o", at("n"))
-    run("dry", "-p", SCENE, *settings(['imposed_empty=["-z"]']), at("n"), "-o", at("d"))
-    run("force-protocol", "-p", SCENE, *settings(["steps=60", "force_scale=1"]), at("d"), "-o", at("forces"))
+    run("dry", "-p", SCENE, *sets('imposed_empty=["-z"]'), at("n"), "-o", at("d"))
+    run("force-protocol", "-p", SCENE, *sets("steps=60", "force_scale=1"), at("d"), "-o", at("forces"))
 
     # The same forces on grains that are moved across the sides.
     shutil.copy(at("forces"), at("moved"))
@@ -29,7 +28,7 @@ with scratch() as folder:
         place = file["particles/position"][:] + shift
         file["particles/position"][:] = place - box * [1, 1, 0] * np.floor(place / box)
     for forces, response in ("forces", "response"), ("moved", "other"):
-        run("dem-replay", "-p", SCENE, *settings([*CYCLES, "support=fixed", "cycles=200"]), at(forces), "-o", at(response))
+        run("dem-replay", "-p", SCENE, *sets(*CYCLES, "support=fixed", "cycles=200"), at(forces), "-o", at(response))
     here, there = h5py.File(at("response")), h5py.File(at("other"))
 
     pairs, place = here["bonds/particles"][:], here["particles/position"][:]

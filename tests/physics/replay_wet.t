@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch
+from tap import BIN, SCENE, done, ok, run, scratch, sets
 
 STIFFNESS, BOND, SHARE, TENSION, VOLUME = 100.0, 8e13, 0.5858, 0.07, 1e-24
 wet = [f"normal_stiffness={STIFFNESS}", f"shear_stiffness={STIFFNESS}",
@@ -24,19 +24,18 @@ wet = [f"normal_stiffness={STIFFNESS}", f"shear_stiffness={STIFFNESS}",
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    settings = lambda words: [word for s in words for word in ("--set", s)]
-    run("pack", "-p", SCENE, *settings(["counts=[3,3,3]"]), "-o", at("p"))
+    run("pack", "-p", SCENE, *sets("counts=[3,3,3]"), "-o", at("p"))
     run("tessellate", "-p", SCENE, at("p"), "-o", at("t"))
     run("merge-nodes", "-p", SCENE, at("t"), "-o", at("n"))
     run("dry", "-p", SCENE, at("n"), "-o", at("d"))
-    run("force-protocol", "-p", SCENE, *settings(["steps=5"]), at("d"), "-o", at("forces"))
+    run("force-protocol", "-p", SCENE, *sets("steps=5"), at("d"), "-o", at("forces"))
     with h5py.File(at("forces"), "r+") as file:
         file["force"][...] = 0
         place, radius = file["particles/position"][:], file["particles/radius"][0]
-    run("dem-replay", "-p", SCENE, *settings(wet + ["snapshots=[0]"]), at("forces"), "-o", at("r"))
+    run("dem-replay", "-p", SCENE, *sets(*wet + ["snapshots=[0]"]), at("forces"), "-o", at("r"))
     curve = json.loads(subprocess.run(
-        [f"{BIN}/bridge", "-q", *settings([f"radius={radius}", f"volume={VOLUME}", "points=2",
-                                           f"surface_tension={TENSION}", "contact_angle=30"])],
+        [f"{BIN}/bridge", "-q", *sets(f"radius={radius}", f"volume={VOLUME}", "points=2",
+                                      f"surface_tension={TENSION}", "contact_angle=30")],
         check=True, capture_output=True).stdout)
     pull = curve["force"][0]
     with h5py.File(at("r")) as file:
@@ -58,7 +57,7 @@ with scratch() as folder:
         copy["force"][...] = force
     loose = ["bond.normal_strength=0", "bond.shear_strength=0", "support=fixed", "cycles=6",
              "friction=0", "bridges.pull_in_contact=false", "snapshots=[1,0]"]
-    run("dem-replay", "-p", SCENE, *settings(wet + loose), at("pulled"), "-o", at("apart"))
+    run("dem-replay", "-p", SCENE, *sets(*wet + loose), at("pulled"), "-o", at("apart"))
     with h5py.File(at("apart")) as file:
         pair, names = file["contacts/particles"][:], ["volume", "force", "gap"]
         volume, force, gap = [file[f"snapshots/bridge_{name}"][-1] for name in names]
@@ -75,9 +74,9 @@ with scratch() as folder:
     along = (on_second * apart).sum(axis=1) / distance
     ok(np.allclose(along[over], -force[over], rtol=1e-6), "their pull is the force of the contact")
     exact = json.loads(subprocess.run(
-        [f"{BIN}/bridge", "-q", *settings([f"radius={radius}", f"volume={VOLUME}",
-                                           f"surface_tension={TENSION}", "contact_angle=30",
-                                           f"separations=[{gap[over][0]:.17g}]"])],
+        [f"{BIN}/bridge", "-q", *sets(f"radius={radius}", f"volume={VOLUME}",
+                                      f"surface_tension={TENSION}", "contact_angle=30",
+                                      f"separations=[{gap[over][0]:.17g}]")],
         check=True, capture_output=True).stdout)["force"][0]
     ok(np.allclose(force[over], exact, rtol=1e-5), "which is that of the exact solution",
        (force[over], exact))
@@ -85,12 +84,12 @@ with scratch() as folder:
     with open(sorted(glob.glob(at("apart*.vtu")))[-1]) as file:
         text = file.read()
     ok(all(f'"bridge_{name}"' in text for name in names), "ParaView gets them too")
-    run("dem-replay", "-p", SCENE, *settings(["cycles=1"]), at("forces"), "-o", at("dry"))
+    run("dem-replay", "-p", SCENE, *sets("cycles=1"), at("forces"), "-o", at("dry"))
     with h5py.File(at("dry")) as file:
         ok(not any("bridge" in name for name in file["snapshots"]), "without liquid there are none")
 
     refused = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, at("forces"), "-o", at("none"),
-                              *settings(wet + ["engine=quasi-static"])],
+                              *sets(*wet + ["engine=quasi-static"])],
                              capture_output=True, text=True)
     ok(refused.returncode == 65 and "bridges" in refused.stderr, "equilibria refuse them",
        refused.stderr)

@@ -12,7 +12,7 @@ from math import asin, cos, pi, radians, sin
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 R, TENSION = 1e-6, 0.07
 folder = scratch()
@@ -24,9 +24,8 @@ def at(name):
 
 def packing(name, grains, upper, *settings):
     np.savetxt(at(name + ".txt"), grains, fmt="%.17g")
-    words = [w for s in settings for w in ("-s", s)]
     run("pack", "-q", "-s", "method=import", "-s", "lower=[0,0,0]", "-s", f"upper={list(upper)}", "-s", "bonds=none",
-        "-s", "check=none", *words, at(name + ".txt"), "-o", at(name))
+        "-s", "check=none", *sets(*settings), at(name + ".txt"), "-o", at(name))
     return at(name)
 
 
@@ -140,7 +139,7 @@ ok(all(np.diff(said["volume"]) < 0) and all(np.diff(said["rings"]) <= 0) and sai
 for settings, line in [(["suctions=[2e5,1e5]"], "rings.suctions: must be above 0 and rise, got 100000 Pa"),
                        (["to=4"], "rings.to: must be above rings.from"),
                        (["contact_angle=90"], "rings.contact_angle")]:
-    refused = subprocess.run([f"{BIN}/rings", "-q", *[w for s in settings for w in ("-s", s)], at("random")],
+    refused = subprocess.run([f"{BIN}/rings", "-q", *sets(*settings), at("random")],
                              capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings[0]} is refused",
        refused.stderr)

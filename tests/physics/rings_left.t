@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 R, TENSION = 1e-6, 0.07
 LIQUID = "fluid=other", f"surface_tension={TENSION}"
@@ -23,19 +23,15 @@ def at(name):
     return os.path.join(folder.name, name)
 
 
-def words(settings):
-    return [w for s in settings for w in ("-s", s)]
-
-
 def network(name, packing, angle=0):
-    settings = words(["throat_volume=void", "throat_radius=entry", f"contact_angle={angle}"])
+    settings = sets("throat_volume=void", "throat_radius=entry", f"contact_angle={angle}")
     run("tessellate", "-q", *settings, packing, "-o", at("diagram"))
     run("merge-nodes", "-q", at("diagram"), "-o", at(name))
     return at(name)
 
 
 def invade(path, *settings, angle=0):
-    run("invade", "-q", *words([*LIQUID, f"contact_angle={angle}", *settings]), path, "-o", at("invasion"))
+    run("invade", "-q", *sets(*LIQUID, f"contact_angle={angle}", *settings), path, "-o", at("invasion"))
     with h5py.File(at("invasion")) as file:
         said = {name: file[name][:] for name in ("events/pressure", "events/saturation", "curve/pressure", "throats/volume")}
         said.update({name: file[name][:] for name in ("events/ring_saturation", "rings/volume", "rings/separation",
@@ -46,21 +42,21 @@ def invade(path, *settings, angle=0):
 
 
 def rings(path, suctions, angle=0):
-    return json.loads(run("rings", "-q", *words([*LIQUID, f"contact_angle={angle}",
-                                                 "suctions=" + json.dumps(list(suctions))]), path))
+    return json.loads(run("rings", "-q", *sets(*LIQUID, f"contact_angle={angle}",
+                                               "suctions=" + json.dumps(list(suctions))), path))
 
 
 def imported(name, grains, upper, *settings):
     np.savetxt(at(name + ".txt"), grains, fmt="%.17g")
-    run("pack", "-q", *words(["method=import", "lower=[0,0,0]", f"upper={list(upper)}", "bonds=none", "check=none",
-                              *settings]), at(name + ".txt"), "-o", at(name))
+    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={list(upper)}", "bonds=none", "check=none",
+                            *settings), at(name + ".txt"), "-o", at(name))
     return at(name)
 
 
 # ---- a random packing -------------------------------------------------------------------
 
-run("pack", "-q", *words(["method=soft_spheres", "count=200", f"radius={R}", "sizes.distribution=normal",
-                          "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"]), "-o", at("packing"))
+run("pack", "-q", *sets("method=soft_spheres", "count=200", f"radius={R}", "sizes.distribution=normal",
+                        "sizes.spread=0.2", "periodic=[true,true,false]", "bonds=none"), "-o", at("packing"))
 for angle in 0, 40:
     net = network("network", at("packing"), angle)
     said = invade(net, "rings=joined", "trapping=false", "liquid_in=pores", angle=angle)
@@ -82,7 +78,7 @@ ok(all(np.diff(kept["events/ring_saturation"]) >= 0) and all(np.diff(kept["event
    abs(kept["rings/volume"].sum() / kept["void"] - kept["residual"]) < 1e-13, "isolated, they only add up")
 for threads in "1", "2":
     for supply in "isolated", "joined":
-        run("invade", "-q", "--threads", threads, *words(["trapping=false", f"rings={supply}"]), net, "-o", at(supply + threads))
+        run("invade", "-q", "--threads", threads, *sets("trapping=false", f"rings={supply}"), net, "-o", at(supply + threads))
 ok(all(filecmp.cmp(at(s + "1"), at(s + "2"), shallow=False) for s in ("isolated", "joined")),
    "one thread and two give the same bytes")
 
@@ -118,7 +114,7 @@ ok(len(wide["rings/volume"]) == 0 and wide["residual"] == 0, "across gaps beyond
 for settings, line in [(["rings=joined"], "invade.trapping: must be false with rings=joined"),
                        (["rings=joined", "trapping=false", "gravity=9.81", "liquid_density=1000"],
                         "invade.gravity: must be 0 with rings=joined")]:
-    refused = subprocess.run([f"{BIN}/invade", "-q", *words(settings), net], capture_output=True, text=True, check=False)
+    refused = subprocess.run([f"{BIN}/invade", "-q", *sets(*settings), net], capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused",
        refused.stderr)
 done()

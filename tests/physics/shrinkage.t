@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch
+from tap import BIN, SCENE, done, ok, run, scratch, sets
 
 RADIUS, STIFFNESS, SHARE, SIDE, STRAIN = 0.26e-6, 5e13, 0.5, 6, 0.01
 AREA = math.pi * (SHARE * RADIUS) ** 2
@@ -167,8 +167,7 @@ with scratch() as folder:
                     "bond.normal_strength=1e12", "bond.shear_strength=1e12",
                     "time_step_safety=null", "cycles=1000", "tolerance=1e-7",
                     "unsettled=count", "most_cycles=20000", "snapshots=[0.5,0]"]
-        run("dem-replay", "-q", *chain, *(word for setting in settings
-                                          for word in ("-s", setting)),
+        run("dem-replay", "-q", *chain, *sets(*settings),
             at("f.h5"), "-o", at(f"{law}.h5"))
         ends.append(h5py.File(at(f"{law}.h5"))["snapshots/displacement"][:])
     ok(near(ends[1][-1], ends[0][-1], 1e-3), "liquid: when dry, as uniform")

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch
+from tap import BIN, done, ok, read, run, scratch, sets
 
 R = 1e-6
 EDGE = np.array([16 * R, 14 * R, 18 * R])
@@ -35,8 +35,7 @@ def overlaps(position, radius, periodic):
 
 
 def refused(*settings):
-    words = [word for setting in settings for word in ("-s", setting)]
-    process = subprocess.run([f"{BIN}/pack", "-q", "-p", scene, *words, "-o", os.devnull],
+    process = subprocess.run([f"{BIN}/pack", "-q", "-p", scene, *sets(*settings), "-o", os.devnull],
                              capture_output=True, text=True)
     return process.returncode == 65 and process.stderr.count("\n") == 1
 
@@ -50,7 +49,7 @@ with scratch() as folder:
         json.dump({"pack": PACK}, file)
 
     def pack(name, *settings):
-        run("pack", "-q", "-p", scene, *(w for s in settings for w in ("-s", s)), "-o", at(name))
+        run("pack", "-q", "-p", scene, *sets(*settings), "-o", at(name))
         return h5py.File(at(name))
 
     for periodic in [True] * 3, [True, False, True]:

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch
+from tap import SCENE, done, ok, run, scratch, sets
 
 SCALE = 1.3333 # of the force, as in the sample
 HELD = ("support=fixed", "engine=quasi-static") # nothing turns as one
@@ -39,7 +39,7 @@ with scratch() as folder:
     def replay(limit, scale, *settings):
         name = at("-".join((limit, str(scale), *settings)))
         forces = forces_of(limit, scale)
-        run("dem-replay", "-p", SCENE, *(word for s in settings for word in ("--set", s)),
+        run("dem-replay", "-p", SCENE, *sets(*settings),
             forces, "-o", name)
         return name
 

@@ -11,13 +11,12 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, CYCLES, SCENE, done, ok, run, scratch
+from tap import BIN, CYCLES, SCENE, done, ok, run, scratch, sets
 
 HELD = (*CYCLES, "support=fixed")
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
-    words = lambda settings: [word for s in settings for word in ("--set", s)]
     small = ("pack", "-p", SCENE, "--set", "counts=[4,4,4]")
     network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE,
                                                         input=run(*small)))
@@ -27,12 +26,12 @@ with scratch() as folder:
     force = h5py.File(at("forces"))["force"][:]
 
     def replay(*settings):
-        run("dem-replay", "-q", "-p", SCENE, *words((*HELD, "cycles=50", *settings)), at("forces"),
+        run("dem-replay", "-q", "-p", SCENE, *sets(*HELD, "cycles=50", *settings), at("forces"),
             "-o", at("response"))
         return h5py.File(at("response"))
 
     def refused(*settings):
-        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words((*HELD, *settings)), at("forces"),
+        tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *sets(*HELD, *settings), at("forces"),
                                 "-o", at("refused")], capture_output=True, text=True)
         return tried.returncode, tried.stderr
 
@@ -91,17 +90,17 @@ with scratch() as folder:
     for large in "false", "true":
         moved = []
         for name in "forces", "backwards":
-            run("dem-replay", "-q", "-p", SCENE, *words((
+            run("dem-replay", "-q", "-p", SCENE, *sets(
                 "engine=quasi-static", "support=free", "friction=0", "bond.normal_strength=1e9",
                 "bond.shear_strength=1e9", "bond.normal_stiffness=8e13", "snapshots=[0.5]",
-                f"quasi_static.large_displacements={large}")), at(name), "-o", at("response"))
+                f"quasi_static.large_displacements={large}"), at(name), "-o", at("response"))
             moved.append(h5py.File(at("response"))["snapshots/displacement"][0])
         size = abs(moved[0]).max()
         apart = abs(moved[0] - moved[1][::-1]).max() / size
         ok(apart < 1e-9 and abs(moved[0].sum(axis=0)).max() < 1e-12 * 64 * size,
            f"large_displacements={large}: the mean place is kept, whatever the numbers of grains",
            (apart, moved[0].sum(axis=0) / size))
-    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words((*HELD, "held.walls=[]", "cycles=1")),
+    tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *sets(*HELD, "held.walls=[]", "cycles=1"),
                             at("forces"), "-o", at("none")], capture_output=True, text=True)
     ok("holds no grain" in tried.stderr and tried.returncode == 0, "where none is held it is said")
     status, message = refused("held.walls=[]", "engine=quasi-static")
@@ -115,7 +114,7 @@ with scratch() as folder:
 
     # ---- what does not come to rest: with this friction a load takes more than one step in time
     for most in 1, 40:
-        words_of_it = words((*HELD, "engine=quasi-static", "friction=2", f"quasi_static.most_iterations={most}"))
+        words_of_it = sets(*HELD, "engine=quasi-static", "friction=2", f"quasi_static.most_iterations={most}")
         told = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words_of_it, at("forces"), "-o",
                                at("response")], capture_output=True, text=True).stderr
         count = h5py.File(at("response"))["summary"].attrs["steps_unsettled"]
@@ -145,7 +144,7 @@ with scratch() as folder:
                    ("cycles=200000",)):
         broken, told = [], []
         for support in "wall", "free":
-            tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words(engine), "--set",
+            tried = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *sets(*engine), "--set",
                                     f"support={support}", at("pressed"), "-o", at("response")],
                                    capture_output=True, text=True)
             told.append(tried.stderr)

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from diagram import of_packing, tessellate
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 random = np.random.default_rng(20)
 SMALL = 200
@@ -118,7 +118,7 @@ with scratch() as folder:
 
     one, two = os.path.join(folder, "one.h5"), os.path.join(folder, "two.h5")
     own = os.path.join(folder, "own-packing.h5")
-    run("pack", "-q", *[w for s in box for w in ("--set", s)], "-o", own)
+    run("pack", "-q", *sets(*box), "-o", own)
     for threads, path in (("1", one), ("2", two)):
         run("tessellate", "-q", "--threads", threads, own, "-o", path)
     with open(one, "rb") as a, open(two, "rb") as b:

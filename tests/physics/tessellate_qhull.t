@@ -12,7 +12,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from diagram import Diagram
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 if not shutil.which("qconvex"):
     print("1..0 # SKIP qhull is not installed")
@@ -66,8 +66,7 @@ def by_network(net):
 
 def compare(title, folder, *settings):
     path = os.path.join(folder, "layer")
-    words = [word for s in settings for word in ("--set", s)]
-    run("pack", "-q", "--set", "dimensions=2", *words, "-o", path + "-packing.h5")
+    run("pack", "-q", "--set", "dimensions=2", *sets(*settings), "-o", path + "-packing.h5")
     run("tessellate", "-q", "--set", "dimensions=2", path + "-packing.h5", "-o", path + ".h5")
     net = Diagram(path + ".h5")
     spacing = np.sqrt(net.edge[0] * net.edge[2] / len(net.radius))

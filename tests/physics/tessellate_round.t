@@ -12,7 +12,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from diagram import Diagram, has_voro, of_packing, voro
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 OUTER, INNER = 64, 128
 CYLINDER = ["domain.shape=cylinder", "domain.radius=0.5", "domain.height=1"]
@@ -266,8 +266,7 @@ def check_chain(folder):
 
 def refused(title, pattern, folder, *settings, grains=None):
     path = os.path.join(folder, "refused.h5")
-    words = [word for s in settings for word in ("--set", s)]
-    run("pack", "-q", *words, "-o", path)
+    run("pack", "-q", *sets(*settings), "-o", path)
     if grains is not None:
         with h5py.File(path, "r+") as file:
             file["particles/position"][: len(grains)] = grains

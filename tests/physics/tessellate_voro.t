@@ -9,7 +9,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from diagram import faces_differ, has_voro, tessellate, voro
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 if not has_voro():
     print("1..0 # SKIP voro++ is not installed")
@@ -39,8 +39,7 @@ def compare(title, folder, grains, edge, periodic, radius=None):
 def packed(title, folder, *settings, power=False):
     """A packing of pack's own, grains in contact."""
     path = os.path.join(folder, "packed.h5")
-    words = [word for s in settings for word in ("--set", s)]
-    run("pack", "-q", "--set", "radius=0.05", *words, "-o", path)
+    run("pack", "-q", "--set", "radius=0.05", *sets(*settings), "-o", path)
     with h5py.File(path) as file:
         grains, radius = file["particles/position"][()], file["particles/radius"][()]
         lower, upper = file["domain/lower"][()], file["domain/upper"][()]

@@ -9,32 +9,28 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
 
 SHAPES = "diffusive_conductance", "hydraulic_conductance", "hydraulic_radius"
-
-
-def settings(*pairs):
-    return [word for pair in pairs for word in ("--set", pair)]
 
 
 def tessellated(at, grains, edge, *pairs, periodic="[false,false,false]"):
     """The network of GRAINS (x, y, z, radius) in a box with that EDGE (three numbers), in m."""
     np.savetxt(at + ".txt", grains, fmt="%.17g")
     upper = "[" + ",".join(f"{x:.17g}" for x in edge) + "]"
-    run("pack", "--quiet", *settings("method=import", "lower=[0,0,0]", f"upper={upper}",
-                                     "bonds=none", f"periodic={periodic}"),
+    run("pack", "--quiet", *sets("method=import", "lower=[0,0,0]", f"upper={upper}",
+                                 "bonds=none", f"periodic={periodic}"),
         at + ".txt", "-o", at + ".packing.h5")
-    run("tessellate", *settings(*pairs), at + ".packing.h5", "-o", at + ".h5")
+    run("tessellate", *sets(*pairs), at + ".packing.h5", "-o", at + ".h5")
     return at + ".h5"
 
 
 def material(at, network, axis, merge=True):
     """Diffusivity and permeability of the box along AXIS, without what a fluid brings."""
     if merge:
-        run("merge-nodes", *settings("measure=mean_length", "threshold=1e-6"), network, "-o", at)
-    run("invade", *settings("transport=true", f'inlet=["+{axis}"]', f'outlet=["-{axis}"]',
-                            "surface_tension=0.07", "liquid_density=1000"),
+        run("merge-nodes", *sets("measure=mean_length", "threshold=1e-6"), network, "-o", at)
+    run("invade", *sets("transport=true", f'inlet=["+{axis}"]', f'outlet=["-{axis}"]',
+                        "surface_tension=0.07", "liquid_density=1000"),
         at if merge else network, "-o", at + ".invasion")
     with h5py.File(at + ".invasion") as file:
         summary = file["summary"].attrs

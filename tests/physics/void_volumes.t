@@ -10,15 +10,14 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def tessellate(*settings, text=None):
         """The network of a packing; TEXT holds the grains of an import."""
-        words = [word for s in settings for word in ("--set", s)]
-        packing = run("pack", "--quiet", *words, input=text)
+        packing = run("pack", "--quiet", *sets(*settings), input=text)
         run("tessellate", "--set", "throat_volume=void", "-o", at("network.h5"), input=packing)
         return h5py.File(at("network.h5"))
 

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 R, RHO, G = 5e-4, 2500.0, 9.81
 MASS = RHO * 4 / 3 * np.pi * R**3
@@ -24,13 +24,12 @@ MATERIAL = (f"density={RHO}", "normal_stiffness=1e4", "shear_stiffness=1e4", f"g
             "bond.normal_strength=1e9", "bond.shear_strength=1e9",
             "ramp=0", "tolerance=null", "local_damping=0", "damping_ratio=0.7", "density_scaling=false")
 ENGINES = "explicit", "quasi-static"
-words = lambda settings: [word for s in settings for word in ("--set", s)]
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)
 
     def pack(counts, *settings):
-        run("pack", *words((f"counts={counts}", f"radius={R}", *settings)), "-o", at("packing"))
+        run("pack", *sets(f"counts={counts}", f"radius={R}", *settings), "-o", at("packing"))
 
     def forces(force, name="forces", capillary_pressure=0.0, **extra):
         """FORCE (n_time, n_particle, 3) as an artifact; the grains are those of the packing."""
@@ -46,7 +45,7 @@ with scratch() as folder:
                 first_period_end_time=0.0, **extra)
 
     def tried(*settings, inputs=("forces",), output="response", options=()):
-        return subprocess.run([f"{BIN}/dem-replay", *words((*MATERIAL, *settings)), *options,
+        return subprocess.run([f"{BIN}/dem-replay", *sets(*MATERIAL, *settings), *options,
                                *map(at, inputs), "-o", at(output)], capture_output=True, text=True,
                               timeout=120)
 
@@ -210,7 +209,7 @@ with scratch() as folder:
 
     # ---- defaults of 500 nm grains ------------------------------------------------------
     def defaults(*settings):
-        return subprocess.run([f"{BIN}/dem-replay", *words(("cycles=1", "time_step_safety=null", *settings)),
+        return subprocess.run([f"{BIN}/dem-replay", *sets("cycles=1", "time_step_safety=null", *settings),
                                at("forces"), "-o", at("response")], capture_output=True, text=True).stderr
 
     said = defaults()
