@@ -10,23 +10,18 @@
 #include "pattern.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "junctions.h"
 #include "run_statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // VALUE is sorted.
 static double median(double *value, int n)
 {
     if (n == 0) return NAN;
-    qsort(value, (size_t)n, sizeof *value, by_value);
+    qsort(value, (size_t)n, sizeof *value, rising_doubles);
     return 0.5 * (value[(n - 1) / 2] + value[n / 2]);
 }
 

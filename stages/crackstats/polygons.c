@@ -12,22 +12,17 @@
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
+#include "basics/sorted.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // The value that a share of 0.98 is at or below, between two linearly.
 static double percentile_98(const double *value, int n)
 {
     double *sorted = duplicate(value, (size_t)n, sizeof *value);
-    qsort(sorted, (size_t)n, sizeof *sorted, by_value);
+    qsort(sorted, (size_t)n, sizeof *sorted, rising_doubles);
     const double at = 0.98 * (n - 1);
     const int k = (int)at;
     const double next = sorted[k + 1 < n ? k + 1 : k];

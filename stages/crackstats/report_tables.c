@@ -12,6 +12,7 @@
 // Borders of classes are (start (n - k) + end k) / n: exact at both ends. What is not
 // finite is null (json_value), as JSON has no other word for it.
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "report.h"
 #include "statistics/sample.h"
 
@@ -127,18 +128,12 @@ static json_t *profiles(const struct ensemble *ensemble)
 
 // ---- sizes --------------------------------------------------------------------------
 
-static int by_size(const void *a, const void *b)
-{
-    const int x = *(const int *)a, y = *(const int *)b;
-    return (x > y) - (x < y);
-}
-
 // [{"size":…, "count":…}, …], rising sizes, those that occur. Sorts them.
 static json_t *size_distribution(struct sizes sizes, double runs)
 {
     json_t *list = json_array();
     if (sizes.count)
-        qsort(sizes.size, (size_t)sizes.count, sizeof *sizes.size, by_size);
+        qsort(sizes.size, (size_t)sizes.count, sizeof *sizes.size, rising_ints);
     for (int first = 0, end; first < sizes.count; first = end) {
         for (end = first; end < sizes.count && sizes.size[end] == sizes.size[first];)
             end++;

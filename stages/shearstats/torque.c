@@ -13,6 +13,7 @@
 #include "torque.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "statistics/sample.h"
 
 #include <math.h>
@@ -21,11 +22,6 @@
 #include <string.h>
 
 // ---- names --------------------------------------------------------------------------
-
-static int by_text(const void *a, const void *b)
-{
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
 
 // Walls of the box come first, in this order (simulate). COUNT gets how many walls the
 // box has: the others are numbered from there.
@@ -60,7 +56,7 @@ static int place_of_name(const json_t *object, const char *name)
     for (void *at = json_object_iter((json_t *)(uintptr_t)object); at;
          at = json_object_iter_next((json_t *)(uintptr_t)object, at))
         names[k++] = json_object_iter_key(at);
-    qsort(names, n, sizeof *names, by_text);
+    qsort(names, n, sizeof *names, rising_texts);
     int found = -1;
     for (k = 0; k < n; k++)
         if (!strcmp(names[k], name)) found = (int)k;

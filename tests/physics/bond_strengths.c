@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strengths of bonds that scatter, against their distributions, and the weakest link of
 // a chain against its closed form.
+#include "basics/sorted.h"
 #include "dem-replay/bonds.h"
 #include "dem_scene.h"
 #include "load_in_memory.h"
@@ -9,12 +10,6 @@
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_randist.h>
-
-static int ascending(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 // The share of strengths below X; normal ones have none below 0.
 static double share_below(const struct strength_scatter *scatter, double x)
@@ -60,7 +55,7 @@ static void drawn_as_the_distribution_says(void **state)
     for (size_t k = 0; k < sizeof scatters / sizeof *scatters; k++) {
         double *x = draw_strengths(&scatters[k], N);
         double sum = 0, square = 0, furthest = 0;
-        qsort(x, N, sizeof *x, ascending);
+        qsort(x, N, sizeof *x, rising_doubles);
         assert_true(x[0] >= 0);
         for (int b = 0; b < N; b++) {
             const double share = share_below(&scatters[k], x[b]);

@@ -4,6 +4,7 @@
 // same, and pores come to where walls put them as one over their radius.
 #include "../test.h"
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "geometry/triangulation/regular_triangulation.h"
 #include "network/pore_cells.h"
 
@@ -36,12 +37,6 @@ static struct packing some_packing(void)
     return packing;
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
-    return (x > y) - (x < y);
-}
-
 // Sorted corners, walls as -1 to -6.
 struct corners {
     int32_t of[4];
@@ -56,7 +51,7 @@ static struct corners sorted(const int32_t corner[4])
 {
     struct corners corners;
     memcpy(corners.of, corner, sizeof corners.of);
-    qsort(corners.of, 4, sizeof *corners.of, by_number);
+    qsort(corners.of, 4, sizeof *corners.of, rising_ints);
     return corners;
 }
 

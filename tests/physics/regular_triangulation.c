@@ -7,6 +7,7 @@
 #include "geometry/triangulation/insertion_order.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "geometry/triangulation/exact.h"
 #include <gsl/gsl_rng.h>
 #include <stdlib.h>
@@ -139,12 +140,6 @@ static int compare_corners(const void *a, const void *b)
     return memcmp(a, b, 4 * sizeof(int32_t));
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const int32_t i = *(const int32_t *)a, j = *(const int32_t *)b;
-    return (i > j) - (i < j);
-}
-
 // The corners of all cells, sorted, numbered as NAME says.
 static int32_t (*cells_of(const struct triangulation *triangulation,
                           const int32_t *name))[4]
@@ -154,7 +149,7 @@ static int32_t (*cells_of(const struct triangulation *triangulation,
     for (size_t c = 0; c < n; c++) {
         for (int k = 0; k < 4; k++)
             corners[c][k] = name[triangulation->cell[c].vertex[k]];
-        qsort(corners[c], 4, sizeof **corners, compare_numbers);
+        qsort(corners[c], 4, sizeof **corners, rising_ints);
     }
     qsort(corners, n, sizeof *corners, compare_corners);
     return corners;

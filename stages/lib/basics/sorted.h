@@ -6,8 +6,10 @@
 #ifndef CRAQUELURE_SORTED_H
 #define CRAQUELURE_SORTED_H
 
-// For qsort of int and of double; NAN has no place in that order. They return -1, 0 or
-// 1.
+#include <string.h>
+
+// For qsort of int, of double (NAN has no place in that order) and of strings, byte by
+// byte.
 static inline int rising_ints(const void *a, const void *b)
 {
     const int first = *(const int *)a, second = *(const int *)b;
@@ -18,6 +20,11 @@ static inline int rising_doubles(const void *a, const void *b)
 {
     const double first = *(const double *)a, second = *(const double *)b;
     return (first > second) - (first < second);
+}
+
+static inline int rising_texts(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
 }
 
 // Where the first of N sorted numbers is that is not below WANTED; N: none is. Binary

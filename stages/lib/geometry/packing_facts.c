@@ -11,6 +11,7 @@
 #include "geometry/packing_check.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "geometry/fabric.h"
 #include "geometry/neighbours.h"
 
@@ -26,19 +27,13 @@ static const double HALVED_SLACK = 0.95; // contacts of DEM packings overlap by 
 
 // ---- sizes --------------------------------------------------------------------------
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void measure_sizes(const struct packing *packing, struct packing_facts *facts)
 {
     double *radius = NEW_ARRAY(double, packing->n_particle);
     for (int i = 0; i < packing->n_particle; i++)
         if (!is_auxiliary(packing, i)) radius[facts->n++] = packing->radius[i];
     if (facts->n) {
-        qsort(radius, (size_t)facts->n, sizeof *radius, compare_numbers);
+        qsort(radius, (size_t)facts->n, sizeof *radius, rising_doubles);
         facts->smallest = radius[0];
         facts->largest = radius[facts->n - 1];
         facts->tenth = radius[facts->n / 10];

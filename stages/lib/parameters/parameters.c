@@ -16,6 +16,7 @@
 #include "parameters/parameters.h"
 
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "basics/status.h"
 #include "parameters/spelling.h"
 
@@ -393,11 +394,6 @@ static json_t *as_typed(const struct parameter *parameter, json_t *value)
 
 static json_t *fill(struct filling *filling, json_t *section, void *parameters);
 
-static int by_text(const void *a, const void *b)
-{
-    return strcmp(*(const char *const *)a, *(const char *const *)b);
-}
-
 // The names in OBJECT, sorted. By strcmp: the order of a JSON object must not matter.
 static struct named_rows sorted_names(json_t *object)
 {
@@ -408,7 +404,7 @@ static struct named_rows sorted_names(json_t *object)
     json_object_foreach(object, key, value) if (strcmp(key, "comment"))
         rows.name[rows.count++] = key;
     if (rows.count > 0)
-        qsort(rows.name, (size_t)rows.count, sizeof *rows.name, by_text);
+        qsort(rows.name, (size_t)rows.count, sizeof *rows.name, rising_texts);
     return rows;
 }
 
