@@ -102,10 +102,7 @@ static struct task *list_tasks(const struct bridge_ratios *ratios, int *count)
 static void fill_equal(struct bridge_ratios *ratios, const struct bodies *bodies,
                        struct task *task)
 {
-    struct bridge_table *table = ratios->equal;
-    const int p = task->patch;
-    task->status =
-        make_patch(bodies, p, &table->volume[p], table->end[p], table->force[p]);
+    task->status = fill_patch(bodies, task->patch, ratios->equal);
 }
 
 static double volume_in_half(int half, double u)
@@ -118,23 +115,6 @@ static double volume_in_half(int half, double u)
 static double steepness_of(int half)
 {
     return 1 / (1.2 * sqrt(volume_in_half(half, 0)));
-}
-
-// Interpolates at HALF_ORDER volumes by ORDER places.
-static void fit_half_place(const double value[HALF_ORDER][SAMPLES], size_t place,
-                           float8 row[HALF_ORDER / 2])
-{
-    double across[ORDER][HALF_ORDER], power[HALF_ORDER];
-    for (int v = 0; v < HALF_ORDER; v++) {
-        fit_polynomial(&value[v][place * ORDER], ORDER, power);
-        for (int j = 0; j < ORDER; j++)
-            across[j][v] = power[j];
-    }
-    for (int j = 0; j < ORDER; j++) {
-        fit_polynomial(across[j], HALF_ORDER, power);
-        for (int i = 0; i < HALF_ORDER; i++)
-            row[i / 2][i % 2 * ORDER + j] = (float)power[i];
-    }
 }
 
 static void fill_ratio(struct bridge_ratios *ratios, const struct bodies *bodies,
@@ -159,7 +139,7 @@ static void fill_ratio(struct bridge_ratios *ratios, const struct bodies *bodies
     if (task->status) return;
     memcpy(to->inverse[k], at.turning, sizeof at.turning);
     for (size_t place = 0; place < PLACES; place++)
-        fit_half_place(value, place, to->force[place][k]);
+        fit_place(HALF_ORDER, value, place, to->force[place][k]);
 }
 
 static void fill(struct bridge_ratios *ratios, double contact_angle, struct task *task)

@@ -112,41 +112,34 @@ static enum status fit_volumes(const struct bodies *bodies, int patch,
     return fit_turning(bodies, patch, true, at);
 }
 
-// Interpolates at ORDER by ORDER nodes.
-static void fit_place(const double value[ORDER][SAMPLES], size_t place, float8 row[2])
+void fit_place(int volumes, const double value[][SAMPLES], size_t place, float8 row[])
 {
-    double across[ORDER][ORDER], power[ORDER];
-    for (int v = 0; v < ORDER; v++) {
+    double across[ORDER][TURNING_ORDER], power[TURNING_ORDER];
+    for (int v = 0; v < volumes; v++) {
         fit_polynomial(&value[v][place * ORDER], ORDER, power);
         for (int j = 0; j < ORDER; j++)
             across[j][v] = power[j];
     }
     for (int j = 0; j < ORDER; j++) {
-        fit_polynomial(across[j], ORDER, power);
-        for (int i = 0; i < ORDER; i++)
+        fit_polynomial(across[j], volumes, power);
+        for (int i = 0; i < volumes; i++)
             row[i / 2][i % 2 * ORDER + j] = (float)power[i];
     }
 }
 
-enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
-                       double end[ORDER], float8 force[PLACES][2])
+enum status fill_patch(const struct bodies *bodies, int patch,
+                       struct bridge_table *table)
 {
+    struct volume_patch *at = &table->volume[patch];
     double value[ORDER][SAMPLES];
-    enum status status = fit_volumes(bodies, patch, at, end);
+    enum status status = fit_volumes(bodies, patch, at, table->end[patch]);
     for (int v = 0; v < ORDER && !status; v++) {
         const double u = chebyshev_node(v, ORDER);
         status = sample_forces(bodies, patch_volume(patch, u), at, u, value[v]);
     }
     for (size_t place = 0; place < PLACES && !status; place++)
-        fit_place(value, place, force[place]);
+        fit_place(ORDER, value, place, table->force[patch][place]);
     return status;
-}
-
-static enum status fill_patch(const struct bodies *bodies, int patch,
-                              struct bridge_table *table)
-{
-    return make_patch(bodies, patch, &table->volume[patch], table->end[patch],
-                      table->force[patch]);
 }
 
 // The largest error of stable bridges at places between the nodes, on the border of two

@@ -22,10 +22,14 @@ enum status sample_forces(const struct bodies *bodies, double volume,
                           const struct volume_patch *at, double u,
                           double values[SAMPLES]);
 
-// The patch PATCH of a table of bridges between BODIES: how gaps become zeta, where in
-// zeta they rupture (END; 0 everywhere: at zeta 0) and the forces. STATUS_OK or
+// Interpolates VALUE of as many VOLUMES, at most TURNING_ORDER and even, by the ORDER
+// nodes of PLACE; the coefficients go to ROW (VOLUMES / 2).
+void fit_place(int volumes, const double value[][SAMPLES], size_t place, float8 row[]);
+
+// The patch PATCH of TABLE, of bridges between BODIES: how gaps become zeta, where in
+// zeta they rupture (0 everywhere: at zeta 0) and the forces. STATUS_OK or
 // STATUS_NOT_CONVERGED.
-enum status make_patch(const struct bodies *bodies, int patch, struct volume_patch *at,
-                       double end[ORDER], float8 force[PLACES][2]);
+enum status fill_patch(const struct bodies *bodies, int patch,
+                       struct bridge_table *table);
 
 #endif
