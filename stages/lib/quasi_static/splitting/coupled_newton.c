@@ -53,13 +53,8 @@ static void find_residual(struct quasi_static *qs, struct splitting *s,
         if (qs->setup.fixed[i] || qs->is_detached[i]) qs->residual[i] = no_displacement;
 }
 
-// Contacts where B u has them, or at their places.
-static void respond(struct quasi_static *qs, struct splitting *s,
-                    enum newton_start start)
+static void respond(struct quasi_static *qs)
 {
-    update_deformation(qs);
-    for (int c = 0; c < s->n_near && start == AT_PLACES; c++)
-        memcpy(qs->deformation[s->near[c]], s->place[c], sizeof s->place[c]);
     for (int j = 0; j < qs->n_pair; j++)
         qs->response[j] = pair_respond(&qs->pair[j], qs->deformation[j]);
 }
@@ -156,13 +151,16 @@ static void take_step(struct quasi_static *qs, struct splitting *s,
 // The first steps may leave a larger residual than there was; after that one that does
 // not fall shows contacts that change to and fro.
 bool coupled_newton(struct quasi_static *qs, struct splitting *s,
-                    enum newton_start start, enum newton_dashpots dashpots)
+                    enum newton_dashpots dashpots)
 {
     enum { STEPS = 10, SLOW = 16, PATIENCE = 2 };
     const double well = TARGET_FRACTION * qs->tolerance_now;
     double before = INFINITY, least = INFINITY;
     int turns = SLOW, idle = 0;
-    respond(qs, s, start);
+    update_deformation(qs);
+    for (int c = 0; c < s->n_near; c++)
+        memcpy(qs->deformation[s->near[c]], s->place[c], sizeof s->place[c]);
+    respond(qs);
     for (int k = 0; k <= STEPS; k++) {
         if (add_near_pairs(qs, s)) turns = SLOW;
         find_residual(qs, s, dashpots);
@@ -182,7 +180,8 @@ bool coupled_newton(struct quasi_static *qs, struct splitting *s,
                 return false;
         }
         take_step(qs, s, dashpots);
-        respond(qs, s, AT_DISPLACEMENTS);
+        update_deformation(qs);
+        respond(qs);
     }
     return false;
 }

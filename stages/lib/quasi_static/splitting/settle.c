@@ -66,11 +66,10 @@ static bool split_without_loose(struct quasi_static *qs, struct splitting *s)
 enum step_end { NOT_FOUND_WITH_DASHPOTS, FOUND_WITH_DASHPOTS, FOUND_EQUILIBRIUM };
 
 static bool newton_from(struct quasi_static *qs, struct splitting *s,
-                        const struct displacement *from, enum newton_start start,
-                        enum newton_dashpots dashpots)
+                        const struct displacement *from, enum newton_dashpots dashpots)
 {
     memcpy(qs->displacement, from, (size_t)qs->n * sizeof *from);
-    return coupled_newton(qs, s, start, dashpots);
+    return coupled_newton(qs, s, dashpots);
 }
 
 // Dashpots that carry less are left out at once.
@@ -89,12 +88,10 @@ static enum step_end take_step(struct quasi_static *qs, struct splitting *s)
         const double carried = carried_by_dashpots(qs, s);
         const bool is_near_rest = carried < LITTLE * qs->largest_load;
         if (is_sought && is_near_rest) {
-            if (newton_from(qs, s, at, AT_PLACES, WITHOUT_DASHPOTS))
-                end = FOUND_EQUILIBRIUM;
+            if (newton_from(qs, s, at, WITHOUT_DASHPOTS)) end = FOUND_EQUILIBRIUM;
             is_sought = false;
         }
-        if (!end && newton_from(qs, s, at, AT_PLACES, WITH_DASHPOTS))
-            end = FOUND_WITH_DASHPOTS;
+        if (!end && newton_from(qs, s, at, WITH_DASHPOTS)) end = FOUND_WITH_DASHPOTS;
     }
     free(at);
     return end;

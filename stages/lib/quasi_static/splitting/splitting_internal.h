@@ -40,13 +40,12 @@ bool split_contacts(struct quasi_static *qs, struct splitting *s, double enough)
 
 // ---- coupled_newton.c ---------------------------------------------------------------
 
-enum newton_start { AT_PLACES, AT_DISPLACEMENTS };
 enum newton_dashpots { WITHOUT_DASHPOTS, WITH_DASHPOTS };
 
 // Newton's method from the displacements on, the first step with the laws of the
-// contacts at START. False: not found; displacements have no meaning then.
+// contacts at their places. False: not found; displacements have no meaning then.
 bool coupled_newton(struct quasi_static *qs, struct splitting *s,
-                    enum newton_start start, enum newton_dashpots dashpots);
+                    enum newton_dashpots dashpots);
 
 // ---- near_pairs.c -------------------------------------------------------------------
 
