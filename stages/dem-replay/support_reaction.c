@@ -14,12 +14,12 @@
 
 #include <stdlib.h>
 
-static void add_load(const struct packing *packing, int grain, double sign,
-                     struct vector force, struct vector moment, struct net_load *sum)
+static void subtract_load(const struct packing *packing, int grain, struct vector force,
+                          struct vector moment, struct net_load *sum)
 {
     const struct vector from = subtract(packing->position[grain], packing->lower);
-    sum->force = add(sum->force, scale(sign, force));
-    sum->moment = add(sum->moment, scale(sign, add(cross(from, force), moment)));
+    sum->force = subtract(sum->force, force);
+    sum->moment = subtract(sum->moment, add(cross(from, force), moment));
 }
 
 // Fixed grains do not move: the load on them is passed on to their support.
@@ -31,7 +31,7 @@ struct net_load reaction_of_dem(const struct packing *packing, const struct dem 
     struct net_load sum = {0};
     dem_loads(dem, force, moment);
     for (int i = 0; i < packing->n_particle; i++)
-        if (held[i]) add_load(packing, i, -1, force[i], moment[i], &sum);
+        if (held[i]) subtract_load(packing, i, force[i], moment[i], &sum);
     if (has_wall) { // at the lower corner, as all moments here are about
         const struct dem_wall_state wall = dem_wall_state(dem, 0);
         sum.force = subtract(sum.force, wall.force);
@@ -49,6 +49,7 @@ struct net_load reaction_of_equilibrium(const struct packing *packing,
     struct net_load sum = {0};
     quasi_static_reaction(equilibrium, packing->lower, &sum.force, &sum.moment);
     for (int i = 0; i < packing->n_particle; i++)
-        if (held[i]) add_load(packing, i, -1, force[i], (struct vector){0, 0, 0}, &sum);
+        if (held[i])
+            subtract_load(packing, i, force[i], (struct vector){0, 0, 0}, &sum);
     return sum;
 }

@@ -247,7 +247,7 @@ bool domain_random_point(const struct domain *domain, double radius, gsl_rng *ra
 }
 
 enum status domain_check_filling(const struct domain *domain, const double *radius,
-                                 int n, double most_share, struct reason *reason)
+                                 int n, struct reason *reason)
 {
     const bool flat = domain->dimensions == 2;
     const double room = domain_volume(domain);
@@ -256,9 +256,9 @@ enum status domain_check_filling(const struct domain *domain, const double *radi
     for (int i = 0; i < n; i++)
         share += flat ? M_PI * radius[i] * radius[i] * thick / room
                       : 4 * M_PI / 3 * radius[i] * radius[i] * radius[i] / room;
-    if (share <= most_share) return STATUS_OK;
+    if (share <= 1) return STATUS_OK;
     return refuse(reason, STATUS_BAD_DATA,
                   "pack.count: must be fewer: %d grains would fill %.3g of the domain, "
-                  "at most %.3g can be",
-                  n, share, most_share);
+                  "at most 1 can be",
+                  n, share);
 }

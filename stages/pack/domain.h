@@ -104,9 +104,9 @@ struct vector domain_wrap(const struct domain *domain, struct vector point);
 struct vector nearest_apart(const struct domain *domain, struct vector from,
                             struct vector to);
 
-// STATUS_BAD_DATA when N grains of these radii have more volume than MOST_SHARE of the
+// STATUS_BAD_DATA when N grains of these radii have more volume than the
 // domain (in two dimensions: area).
 enum status domain_check_filling(const struct domain *domain, const double *radius,
-                                 int n, double most_share, struct reason *reason);
+                                 int n, struct reason *reason);
 
 #endif

@@ -86,7 +86,7 @@ enum status random_sequential(const struct domain *domain, const struct sizes *s
 {
     double *radius = sizes_draw_many(sizes, count, random);
     if (count) qsort(radius, (size_t)count, sizeof *radius, falling);
-    enum status status = domain_check_filling(domain, radius, count, 1, reason);
+    enum status status = domain_check_filling(domain, radius, count, reason);
     if (status) {
         free(radius);
         return status;

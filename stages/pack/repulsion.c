@@ -91,7 +91,7 @@ static enum status fill(const struct making *making, int count, double stiffness
     double *radius = sizes_draw_many(making->sizes, count, making->random);
     *making->packing = packing_in(making->domain, count);
     making->packing->n_particle = 0;
-    enum status status = domain_check_filling(making->domain, radius, count, 1, reason);
+    enum status status = domain_check_filling(making->domain, radius, count, reason);
     const int batch = count / BATCHES > 0 ? count / BATCHES : 1;
     for (int n = batch; status == STATUS_OK; n += batch) {
         status = add_batch(making, radius, n < count ? n : count, reason);
@@ -121,7 +121,7 @@ enum status repel(const struct making *making, int count, struct reason *reason)
     else {
         const struct packing *packing = making->packing;
         status = domain_check_filling(making->domain, packing->radius,
-                                      packing->n_particle, 1, reason);
+                                      packing->n_particle, reason);
         if (status == STATUS_OK) separate_coincident(making);
         if (status == STATUS_OK)
             status = push_apart(making, stiffness, wall, n_wall, reason);

@@ -192,7 +192,7 @@ static enum status place_at_random(const struct domain *domain,
                                    struct reason *reason)
 {
     double *radius = sizes_draw_many(sizes, count, random);
-    enum status status = domain_check_filling(domain, radius, count, 1, reason);
+    enum status status = domain_check_filling(domain, radius, count, reason);
     *packing = packing_in(domain, count);
     for (int i = 0; !status && i < count; i++) {
         packing->radius[i] = radius[i];

@@ -110,36 +110,33 @@ const struct recorded_column *recorded(const struct record *record, const char *
 }
 
 // Doubled, so that n rows cost O(n) copies.
-static void make_room(struct recorded_column *c, int64_t rows)
+static void make_room(struct recorded_column *c)
 {
-    if (c->rows + rows <= c->capacity) return;
-    const int64_t doubled = 2 * c->capacity;
-    c->capacity = c->rows + rows > doubled ? c->rows + rows : doubled;
+    if (c->rows < c->capacity) return;
+    c->capacity = c->capacity ? 2 * c->capacity : 1;
     c->data =
         reallocate(c->data, (size_t)(c->capacity * c->width), number_size(c->type));
 }
 
-// Adds N rows; does nothing where DATASET is not recorded.
-static void add_rows(struct record *record, const char *dataset, const void *rows,
-                     int64_t n)
+// Does nothing where DATASET is not recorded.
+static void add_row(struct record *record, const char *dataset, const void *of)
 {
     struct recorded_column *c = column(record, dataset);
     if (!c) return;
-    make_room(c, n);
+    make_room(c);
     const size_t row = (size_t)c->width * number_size(c->type);
-    if (n > 0 && row > 0)
-        memcpy((char *)c->data + (size_t)c->rows * row, rows, (size_t)n * row);
-    c->rows += n;
+    if (row > 0) memcpy((char *)c->data + (size_t)c->rows * row, of, row);
+    c->rows++;
 }
 
 static void add_number(struct record *record, const char *dataset, double value)
 {
-    add_rows(record, dataset, &value, 1);
+    add_row(record, dataset, &value);
 }
 
 static void add_count(struct record *record, const char *dataset, int64_t value)
 {
-    add_rows(record, dataset, &value, 1);
+    add_row(record, dataset, &value);
 }
 
 // ---- sums ---------------------------------------------------------------------------
@@ -156,9 +153,9 @@ static void record_walls(struct record *record, const struct scene *scene,
         of[n + w] = state.moment;
         of[2 * n + w] = state.displacement;
     }
-    add_rows(record, "/history/wall_force", of, 1);
-    add_rows(record, "/history/wall_moment", of + n, 1);
-    add_rows(record, "/history/wall_displacement", of + 2 * (size_t)n, 1);
+    add_row(record, "/history/wall_force", of);
+    add_row(record, "/history/wall_moment", of + n);
+    add_row(record, "/history/wall_displacement", of + 2 * (size_t)n);
     free(of);
 }
 
@@ -178,10 +175,10 @@ static void record_groups(struct record *record, const struct scene *scene,
         of[2 * n + k] = state.displacement;
         angle[k] = state.angle;
     }
-    add_rows(record, "/history/group_force", of, 1);
-    add_rows(record, "/history/group_moment", of + n, 1);
-    add_rows(record, "/history/group_displacement", of + 2 * (size_t)n, 1);
-    add_rows(record, "/history/group_angle", angle, 1);
+    add_row(record, "/history/group_force", of);
+    add_row(record, "/history/group_moment", of + n);
+    add_row(record, "/history/group_displacement", of + 2 * (size_t)n);
+    add_row(record, "/history/group_angle", angle);
     free(angle);
     free(of);
 }
@@ -194,7 +191,7 @@ static void record_energy(struct record *record, const struct dem *dem)
     add_number(record, "/history/kinetic_energy", energy.kinetic);
     add_number(record, "/history/elastic_energy", energy.elastic);
     add_number(record, "/history/work", energy.gained);
-    add_rows(record, "/history/dissipation", lost, 1);
+    add_row(record, "/history/dissipation", lost);
 }
 
 // The unbalanced ratio is infinite where forces act and no contact carries any. HDF5
@@ -218,7 +215,7 @@ static void record_stress(struct record *record, const struct scene *scene,
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++)
             stress[k][l] = between > 0 ? census->stress[k][l] * (box / between) : 0;
-    add_rows(record, "/history/stress", stress, 1);
+    add_row(record, "/history/stress", stress);
 }
 
 void record_sums(struct record *record, const struct scene *scene,
@@ -236,9 +233,9 @@ void record_sums(struct record *record, const struct scene *scene,
     add_number(record, "/history/coordination", n > 0 ? 2.0 * census.contacts / n : 0);
     add_number(record, "/history/largest_overlap", fmax(census.largest_overlap, 0));
     record_stress(record, scene, dem, &census);
-    add_rows(record, "/history/momentum", &momentum.linear, 1);
-    add_rows(record, "/history/box_lower", &lower, 1);
-    add_rows(record, "/history/box_upper", &upper, 1);
+    add_row(record, "/history/momentum", &momentum.linear);
+    add_row(record, "/history/box_lower", &lower);
+    add_row(record, "/history/box_upper", &upper);
     record_energy(record, dem);
     record_walls(record, scene, dem);
     record_groups(record, scene, dem);
@@ -259,13 +256,13 @@ static void record_contacts(struct record *record, const struct dem *dem)
     struct dem_contact *contact = dem_contacts(dem, &n);
     add_count(record, "/snapshots/contacts", n);
     for (int k = 0; k < n; k++) {
-        add_rows(record, "/contacts/particles", contact[k].particle, 1);
-        add_rows(record, "/contacts/force", &contact[k].force, 1);
-        add_rows(record, "/contacts/position", &contact[k].position, 1);
-        add_rows(record, "/contacts/overlap", &contact[k].overlap, 1);
-        add_rows(record, "/contacts/bond", &contact[k].bond, 1);
-        add_rows(record, "/contacts/bridge_volume", &contact[k].bridge_volume, 1);
-        add_rows(record, "/contacts/bridge_force", &contact[k].bridge_force, 1);
+        add_row(record, "/contacts/particles", contact[k].particle);
+        add_row(record, "/contacts/force", &contact[k].force);
+        add_row(record, "/contacts/position", &contact[k].position);
+        add_row(record, "/contacts/overlap", &contact[k].overlap);
+        add_row(record, "/contacts/bond", &contact[k].bond);
+        add_row(record, "/contacts/bridge_volume", &contact[k].bridge_volume);
+        add_row(record, "/contacts/bridge_force", &contact[k].bridge_force);
     }
     free(contact);
 }
@@ -278,14 +275,14 @@ void record_snapshot(struct record *record,
     struct vector *of = NEW_ARRAY(struct vector, n), lower, upper;
     dem_box(dem, &lower, &upper);
     add_number(record, "/snapshots/time", time);
-    add_rows(record, "/snapshots/box_lower", &lower, 1);
-    add_rows(record, "/snapshots/box_upper", &upper, 1);
+    add_row(record, "/snapshots/box_lower", &lower);
+    add_row(record, "/snapshots/box_upper", &upper);
     dem_positions(dem, of);
-    add_rows(record, "/snapshots/position", of, 1);
+    add_row(record, "/snapshots/position", of);
     dem_velocities(dem, of);
-    add_rows(record, "/snapshots/velocity", of, 1);
+    add_row(record, "/snapshots/velocity", of);
     dem_spins(dem, of);
-    add_rows(record, "/snapshots/spin", of, 1);
+    add_row(record, "/snapshots/spin", of);
     free(of);
     if (parameters->record_contacts)
         record_contacts(record, dem);

@@ -220,10 +220,10 @@ static bool shares_fit(const struct emptying_times *times)
 
 // ---- the history -------------------------------------------------------------------
 
-static bool lies_within(const double *value, int64_t n, double least, double most)
+static bool lies_up_to(const double *value, int64_t n, double most)
 {
     for (int64_t k = 0; k < n; k++)
-        if (!(value[k] >= least && value[k] <= most)) return false;
+        if (!(value[k] >= 0 && value[k] <= most)) return false;
     return true;
 }
 
@@ -244,11 +244,11 @@ static bool history_fits(const struct recorder *recorder)
         if (history->change_offset[k + 1] < history->change_offset[k]) return false;
     return history->change_offset[0] == 0 &&
            history->change_offset[n] == recorder->n_change &&
-           lies_within(history->change_saturation, recorder->n_change, 0, 1) &&
-           lies_within(history->saturation, n, 0, 1) &&
-           lies_within(history->rate, n, 0, INFINITY) &&
-           lies_within(history->time, n, 0, INFINITY) && rises(history->time, n) &&
-           lies_within(history->event_time, n_event, 0, INFINITY) &&
+           lies_up_to(history->change_saturation, recorder->n_change, 1) &&
+           lies_up_to(history->saturation, n, 1) &&
+           lies_up_to(history->rate, n, INFINITY) &&
+           lies_up_to(history->time, n, INFINITY) && rises(history->time, n) &&
+           lies_up_to(history->event_time, n_event, INFINITY) &&
            rises(history->event_time, n_event);
 }
 
