@@ -221,11 +221,6 @@ static json_t *digests(const struct artifact *input, const struct artifact *earl
     return inputs;
 }
 
-static void show(void *bar, double fraction)
-{
-    progress_update(bar, fraction);
-}
-
 static void run(const struct packing *packing, const struct load *load,
                 const struct replay_settings *settings,
                 const struct invocation *invocation, const char *path,
@@ -233,9 +228,9 @@ static void run(const struct packing *packing, const struct load *load,
 {
     struct progress bar = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
-    const enum status status =
-        replay(packing, load, settings, &(struct replay_progress){show, &bar}, keeper,
-               response, &reason);
+    const enum status status = replay(packing, load, settings,
+                                      &(struct replay_progress){progress_update, &bar},
+                                      keeper, response, &reason);
     progress_end(&bar);
     // Only a state that was kept can be at fault for bad data here.
     if (status == STATUS_BAD_DATA && keeper->begin) path = invocation->checkpoint;

@@ -98,20 +98,15 @@ static double *read_start(const struct artifact *input, const struct network *ne
     return start;
 }
 
-static void show(void *bar, double fraction)
-{
-    progress_update(bar, fraction);
-}
-
 static void dry(const struct network *network, const struct dry_parameters *parameters,
                 const struct invocation *invocation, const char *path,
                 const struct keeper *keeper, struct drying_history *history)
 {
     struct progress bar = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
-    const enum status status =
-        dry_network(network, &parameters->conditions,
-                    &(struct drying_progress){show, &bar, keeper}, history, &reason);
+    const enum status status = dry_network(
+        network, &parameters->conditions,
+        &(struct drying_progress){progress_update, &bar, keeper}, history, &reason);
     progress_end(&bar);
     // Only a state that was kept can be at fault for bad data after another run.
     if (status == STATUS_BAD_DATA && keeper->begin) path = invocation->checkpoint;

@@ -205,11 +205,6 @@ static void write(const struct simulate_parameters *parameters,
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 
-static void show(void *bar, double fraction)
-{
-    progress_update(bar, fraction);
-}
-
 // A state that does not fit is the checkpoint's fault, any other failure the input's.
 static void run(const struct simulate_parameters *parameters, struct scene *scene,
                 const struct vector *force, const struct invocation *invocation,
@@ -217,8 +212,9 @@ static void run(const struct simulate_parameters *parameters, struct scene *scen
 {
     struct progress bar = progress_begin(invocation->progress, invocation->quiet);
     struct reason reason;
-    const enum status status = run_scene(parameters, scene, force, invocation->threads,
-                                         show, &bar, keeper, outcome, &reason);
+    const enum status status =
+        run_scene(parameters, scene, force, invocation->threads, progress_update, &bar,
+                  keeper, outcome, &reason);
     progress_end(&bar);
     const bool kept = status == STATUS_BAD_DATA && keeper->begin;
     if (status)

@@ -51,8 +51,9 @@ static void draw_time_left(struct progress *progress, double elapsed, double fra
     fprintf(stderr, "  %.0f s left ", progress->left);
 }
 
-void progress_update(struct progress *progress, double fraction)
+void progress_update(void *of, double fraction)
 {
+    struct progress *progress = of;
     if (!progress->shown) return;
     const double time = now();
     if (time - progress->last_draw < 0.1) return;

@@ -25,8 +25,9 @@ struct progress {
 // over all modes.
 struct progress progress_begin(enum progress_mode mode, bool quiet);
 
-// FRACTION done, 0 to 1. Cheap: draws at most ten times a second.
-void progress_update(struct progress *progress, double fraction);
+// FRACTION done, 0 to 1, of PROGRESS, a struct progress: computations call it back.
+// Cheap: draws at most ten times a second.
+void progress_update(void *progress, double fraction);
 
 // The time left (s) when FRACTION has been done ELAPSED seconds after the beginning,
 // and LEFT (below 0: nothing) was said SINCE seconds ago. Work is seldom even: what is
