@@ -6,6 +6,8 @@
 // 0.99 of rupture (volumes 1e-6 to 0.1, contact angle 20 degrees), of the exact force.
 // Times are the least of many short runs.
 #include "basics/memory.h"
+#include "basics/progress.h"
+#include "basics/sorted.h"
 #include "bridges/bridges.h"
 #include "bridges/equilibrium.h"
 #include "bridges/table.h"
@@ -13,7 +15,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 enum { COUNT = 4096, RUNS = 300 };
 static const double contact_angle = 20 * M_PI / 180;
@@ -21,13 +22,6 @@ static const double contact_angle = 20 * M_PI / 180;
 struct sample {
     double volume[COUNT], gap[COUNT], exact[COUNT], force[COUNT];
 };
-
-static double seconds(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
 
 static struct bodies equal_spheres(void)
 {
@@ -50,19 +44,13 @@ static void draw(struct sample *sample, const struct bridge_table *table)
     }
 }
 
-static int rising(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static void print_line(const char *name, double one, double many,
                        const struct sample *sample)
 {
     static double error[COUNT];
     for (int k = 0; k < COUNT; k++)
         error[k] = fabs(sample->force[k] / sample->exact[k] - 1);
-    qsort(error, COUNT, sizeof *error, rising);
+    qsort(error, COUNT, sizeof *error, rising_doubles);
     char text[32] = "-";
     if (many > 0) snprintf(text, sizeof text, "%.2f", many);
     printf("%-20s %9.2f %9s %9.1e %9.1e\n", name, one, text,
@@ -74,9 +62,9 @@ static void print_line(const char *name, double one, double many,
     __extension__({                                                                    \
         double least = INFINITY;                                                       \
         for (int run = 0; run < (runs); run++) {                                       \
-            const double start = seconds();                                            \
+            const double start = seconds_now();                                        \
             DO;                                                                        \
-            least = fmin(least, seconds() - start);                                    \
+            least = fmin(least, seconds_now() - start);                                \
         }                                                                              \
         1e9 / COUNT *least;                                                            \
     })

@@ -10,6 +10,7 @@
 #include "artifacts/checkpoint.h"
 
 #include "basics/memory.h"
+#include "basics/progress.h"
 #include "basics/status.h"
 
 #include <errno.h>
@@ -18,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 // ---- signals ------------------------------------------------------------------------
@@ -223,19 +223,12 @@ static void read_state(struct checkpoint *checkpoint)
 
 // ---- when ---------------------------------------------------------------------------
 
-static double now(void)
-{
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 // Never by a cycle or a load: when states are kept must not touch results.
 static bool due(void *context)
 {
     const struct checkpoint *checkpoint = context;
-    return stopped_by ||
-           now() - checkpoint->written >= checkpoint->invocation->checkpoint_every;
+    return stopped_by || seconds_now() - checkpoint->written >=
+                             checkpoint->invocation->checkpoint_every;
 }
 
 // Ends the program, by the signal, if one has come.
@@ -245,7 +238,7 @@ static void keep(void *context, const struct kept_state *state)
     const int signal_now = stopped_by;
     const bool silent = checkpoint->has_failed && !signal_now;
     const int status = write_state(checkpoint, state, silent);
-    checkpoint->written = now();
+    checkpoint->written = seconds_now();
     if (status && signal_now) exit(status);
     if (status && !silent)
         report("%s: the state was not kept this time; the run continues",
@@ -263,7 +256,7 @@ void checkpoint_begin(struct checkpoint *checkpoint, struct invocation *invocati
                       json_t *inputs)
 {
     *checkpoint = (struct checkpoint){
-        .invocation = invocation, .inputs = inputs, .written = now()};
+        .invocation = invocation, .inputs = inputs, .written = seconds_now()};
     if (!invocation->checkpoint) return;
     checkpoint->keeper =
         (struct keeper){.due = due, .keep = keep, .context = checkpoint};

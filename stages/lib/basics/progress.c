@@ -14,7 +14,7 @@
 
 enum { BAR_WIDTH = 40 };
 
-static double now(void)
+double seconds_now(void)
 {
     struct timespec time;
     clock_gettime(CLOCK_MONOTONIC, &time);
@@ -23,7 +23,7 @@ static double now(void)
 
 struct progress progress_begin(enum progress_mode mode, bool quiet)
 {
-    const double start = now();
+    const double start = seconds_now();
     const bool terminal = mode == PROGRESS_AUTO && !quiet && isatty(STDERR_FILENO);
     return (struct progress){.shown = terminal || mode == PROGRESS_ALWAYS,
                              .started = start,
@@ -55,7 +55,7 @@ void progress_update(void *of, double fraction)
 {
     struct progress *progress = of;
     if (!progress->shown) return;
-    const double time = now();
+    const double time = seconds_now();
     if (time - progress->last_draw < 0.1) return;
     const double since = time - progress->last_draw;
     progress->last_draw = time;

@@ -21,6 +21,9 @@ struct progress {
     double left;      // s, as shown last; below 0: not yet
 };
 
+// Seconds of a clock that nobody sets.
+double seconds_now(void);
+
 // AUTO draws only on a terminal, and only once the work has lasted a second. QUIET wins
 // over all modes.
 struct progress progress_begin(enum progress_mode mode, bool quiet);
