@@ -145,11 +145,6 @@ struct computation {
     struct pore_stress stress;
 };
 
-static struct vector vector_of(const double x[3])
-{
-    return (struct vector){x[0], x[1], x[2]};
-}
-
 // NULL when neither box nor grains move. Velocities of the packing, where it has them;
 // else grains move with the strain of the box, v = rate x. Scaled by the unit of
 // length; (n_pore) volume a time.
@@ -157,7 +152,7 @@ static double *find_opening(const struct artifact *input,
                             const struct flow_parameters *parameters,
                             const struct computation *flow)
 {
-    const struct vector rate = vector_of(parameters->strain_rate);
+    const struct vector rate = as_vector(parameters->strain_rate);
     const int n = flow->packing.n_particle;
     const bool given = artifact_has_dataset(input, "/particles/velocity");
     if (!given && !(norm(rate) > 0)) return NULL;
@@ -315,7 +310,7 @@ static void write(const struct computation *computation,
         .forces = &computation->forces,
         .opening = computation->opening,
         .viscosity = parameters->viscosity,
-        .weight = scale(parameters->density, vector_of(parameters->gravity)),
+        .weight = scale(parameters->density, as_vector(parameters->gravity)),
         .permeability = permeability_of(computation, &parameters->imposed),
         .bed_share = parameters->imposed.along == ALONG_NONE
                          ? 1

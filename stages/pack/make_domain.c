@@ -12,11 +12,6 @@
 // along z. In two dimensions (x and z) the box is one largest diameter thick along y.
 #include "domain.h"
 
-static struct vector vector_of(const double three[3])
-{
-    return (struct vector){three[0], three[1], three[2]};
-}
-
 // ---- the shape ----------------------------------------------------------------------
 
 // The lower corner is the origin unless given. Comparisons are written so that NAN
@@ -84,7 +79,7 @@ static enum status make_round(const struct domain_parameters *parameters,
     if (domain->shape != DOMAIN_SPHERE) half.z = parameters->height / 2;
     if (domain->dimensions == 2) half.y = largest;
     domain->centre =
-        isnan(parameters->centre[0]) ? half : vector_of(parameters->centre);
+        isnan(parameters->centre[0]) ? half : as_vector(parameters->centre);
     domain->radius = radius;
     domain->inner_radius = domain->shape == DOMAIN_RING ? parameters->inner_radius : 0;
     domain->lower = subtract(domain->centre, half);
@@ -138,10 +133,10 @@ static enum status make_cut(const struct domain_parameters *parameters,
     const struct vector half = {radius, radius, radius};
     const struct vector centre = isnan(parameters->cut_centre[0])
                                      ? domain->centre
-                                     : vector_of(parameters->cut_centre);
+                                     : as_vector(parameters->cut_centre);
     domain->cut_radius = radius;
-    domain->cut_lower = box ? vector_of(parameters->cut_lower) : subtract(centre, half);
-    domain->cut_upper = box ? vector_of(parameters->cut_upper) : add(centre, half);
+    domain->cut_lower = box ? as_vector(parameters->cut_lower) : subtract(centre, half);
+    domain->cut_upper = box ? as_vector(parameters->cut_upper) : add(centre, half);
     if (domain->cut == CUT_CYLINDER) {
         const double low = parameters->cut_lower[2], high = parameters->cut_upper[2];
         domain->cut_lower.z = isnan(low) ? domain->lower.z : low;

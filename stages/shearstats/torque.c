@@ -90,7 +90,7 @@ static struct vector point_of_group(const struct motion *motion, const char *nam
     double x[3] = {0};
     for (size_t k = 0; k < 3; k++)
         x[k] = json_number_value(json_array_get(point, k));
-    return (struct vector){x[0], x[1], x[2]};
+    return as_vector(x);
 }
 
 // The next name of LIST, without blanks around it; false at its end.

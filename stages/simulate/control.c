@@ -48,7 +48,7 @@ double mean_factor(const struct time_table *table, double time, double span)
 
 static bool strains(const struct simulate_parameters *parameters)
 {
-    return norm(to_vector(parameters->strain_rate)) > 0;
+    return norm(as_vector(parameters->strain_rate)) > 0;
 }
 
 static bool has_table(const struct time_table *table)
@@ -169,8 +169,8 @@ void control(const struct simulate_parameters *parameters, const struct scene *s
         if (driven < 0 || !has_table(&row->motion)) continue;
         const double factor =
             mean_factor(&row->motion, time, CONTROL_EVERY * dem_time_step(dem));
-        dem_set_group_motion(dem, driven, scale(factor, to_vector(row->velocity)),
-                             factor * norm(to_vector(row->spin)));
+        dem_set_group_motion(dem, driven, scale(factor, as_vector(row->velocity)),
+                             factor * norm(as_vector(row->spin)));
     }
     if (strains(parameters)) strain_box(parameters, dem);
 }

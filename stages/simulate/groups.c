@@ -35,8 +35,8 @@ static bool in_box(const struct group_parameters *group, struct vector x)
 // to outer, so that nested rings share no grain.
 static bool in_ring(const struct group_parameters *group, struct vector x)
 {
-    const struct vector axis = to_vector(group->ring_axis);
-    const struct vector from = subtract(x, to_vector(group->ring_centre));
+    const struct vector axis = as_vector(group->ring_axis);
+    const struct vector from = subtract(x, as_vector(group->ring_centre));
     const double along = dot(from, axis) / norm(axis);
     const double distance = sqrt(fmax(dot(from, from) - along * along, 0));
     return distance >= group->ring_inner && !(distance >= group->ring_outer);
@@ -87,7 +87,7 @@ static enum status find_members(const struct simulate_parameters *parameters, in
 {
     const struct group_parameters *row = group_row(parameters, group);
     const char *name = parameters->groups.name[group];
-    const struct vector axis = to_vector(row->ring_axis);
+    const struct vector axis = as_vector(row->ring_axis);
     if (!(norm(axis) > 0))
         return refuse(reason, STATUS_BAD_DATA,
                       "simulate.groups.%s.ring.axis: must not be 0", name);
@@ -112,11 +112,11 @@ static void add_driven(const struct group_parameters *row, int group,
 {
     scene->driven_group[group] = row->driven ? scene->n_driven : -1;
     if (!row->driven) return;
-    const struct vector spin = to_vector(row->spin);
+    const struct vector spin = as_vector(row->spin);
     scene->driven[scene->n_driven++] =
-        (struct dem_group){.point = to_vector(row->point),
+        (struct dem_group){.point = as_vector(row->point),
                            .axis = spin,
-                           .velocity = to_vector(row->velocity),
+                           .velocity = as_vector(row->velocity),
                            .spin = norm(spin)};
 }
 
@@ -135,8 +135,8 @@ static void set_start(const struct simulate_parameters *parameters,
         if (group < 0) continue;
         const struct group_parameters *row = group_row(parameters, group);
         if (!isnan(row->initial_velocity[0]))
-            scene->velocity[i] = to_vector(row->initial_velocity);
-        scene->spin[i] = to_vector(row->initial_spin);
+            scene->velocity[i] = as_vector(row->initial_velocity);
+        scene->spin[i] = as_vector(row->initial_spin);
         scene->driven_of[i] = (uint8_t)(scene->driven_group[group] + 1);
     }
 }

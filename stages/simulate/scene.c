@@ -226,18 +226,18 @@ static enum status add_box_walls(const struct simulate_parameters *parameters,
 static struct dem_wall make_wall(const struct wall_parameters *row)
 {
     return (struct dem_wall){
-        .point = to_vector(row->point),
-        .normal = to_vector(row->normal),
+        .point = as_vector(row->point),
+        .normal = as_vector(row->normal),
         .shape = (enum dem_wall_shape)row->shape,
         .outside = row->outside,
         .radius = given_or(row->radius, 0),
         .inner_radius = row->inner_radius,
         .half_edge = isnan(row->half_edge[0]) ? (struct vector){0, 0, 0}
-                                              : to_vector(row->half_edge),
+                                              : as_vector(row->half_edge),
         .friction = given_or(row->friction, 0),
         .has_friction = !isnan(row->friction),
-        .velocity = to_vector(row->velocity),
-        .spin = to_vector(row->spin),
+        .velocity = as_vector(row->velocity),
+        .spin = as_vector(row->spin),
         .servo_force = given_or(row->servo_force, 0),
         .servo_largest_speed = given_or(row->servo_largest_speed, 0)};
 }
@@ -315,7 +315,7 @@ static void set_engine(const struct simulate_parameters *parameters,
     setup->n_group = scene->n_driven;
     setup->group = scene->driven;
     setup->group_of = scene->driven_of;
-    setup->gravity = to_vector(parameters->gravity);
+    setup->gravity = as_vector(parameters->gravity);
     setup->density_scaling = parameters->density_scaling;
     setup->time_step_safety = NAN;
     setup->automatic_share = parameters->time_step_share;

@@ -51,11 +51,6 @@ enum status scene_init(const struct simulate_parameters *parameters,
                        struct scene *scene, struct reason *reason);
 void scene_free(struct scene *scene);
 
-static inline struct vector to_vector(const double x[3])
-{
-    return (struct vector){x[0], x[1], x[2]};
-}
-
 static inline const struct group_parameters *
 group_row(const struct simulate_parameters *parameters, int k)
 {

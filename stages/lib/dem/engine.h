@@ -542,11 +542,6 @@ static inline double *spin_of(const struct dem *dem, int i)
     return dem->spin + dem->motion_stride * (size_t)i;
 }
 
-static inline struct vector as_vector(const double a[3])
-{
-    return (struct vector){a[0], a[1], a[2]};
-}
-
 // Where the centre of PARTICLE is, scaled: for geometry only, as the sum rounds what
 // the displacement keeps.
 static inline struct vector position_now(const struct dem *dem, int particle)

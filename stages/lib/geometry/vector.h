@@ -18,6 +18,11 @@ struct vector {
 
 static_assert(sizeof(struct vector) == 3 * sizeof(double), "an (n,3) dataset");
 
+static inline struct vector as_vector(const double a[3])
+{
+    return (struct vector){a[0], a[1], a[2]};
+}
+
 // A + B; below A - B, and S times A.
 static inline struct vector add(struct vector a, struct vector b)
 {
