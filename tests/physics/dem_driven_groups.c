@@ -414,15 +414,6 @@ static void test_drags_on_a_fixed_grain(void **state)
     packing_free(&scene.packing);
 }
 
-static void refuses(struct dem_setup setup, const char *why)
-{
-    struct dem *dem;
-    struct reason reason = {""};
-    assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
-    assert_null(dem);
-    if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
-}
-
 static void test_refuses_what_it_cannot(void **state)
 {
     (void)state;
@@ -433,20 +424,20 @@ static void test_refuses_what_it_cannot(void **state)
     set_scene(&scene, 2, position, 0, NULL);
     scene.setup.group = &group;
     scene.setup.group_of = of;
-    refuses(scene.setup, "grain 0: no driven group 0 among 0");
+    assert_refused(scene.setup, "grain 0: no driven group 0 among 0");
     scene.setup.n_group = 256;
-    refuses(scene.setup, "must be in [0,255]");
+    assert_refused(scene.setup, "must be in [0,255]");
     scene.setup.n_group = 1;
     scene.setup.group_of = beyond;
-    refuses(scene.setup, "grain 1: no driven group 1 among 1");
+    assert_refused(scene.setup, "grain 1: no driven group 1 among 1");
     scene.setup.group_of = of;
     scene.setup.fixed = fixed;
-    refuses(scene.setup, "grain 0: is fixed and in driven group 0");
+    assert_refused(scene.setup, "grain 0: is fixed and in driven group 0");
     scene.setup.fixed = NULL;
     group.spin = 1;
-    refuses(scene.setup, "needs an axis");
+    assert_refused(scene.setup, "needs an axis");
     group.axis.x = NAN;
-    refuses(scene.setup, "is not finite");
+    assert_refused(scene.setup, "is not finite");
 
     group = (struct dem_group){.velocity = {1e3, 0, 0}}; // as fast as a free grain
     struct dem *dem = create(&scene.setup);

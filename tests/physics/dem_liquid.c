@@ -630,12 +630,7 @@ static void test_is_scale_free(void **state)
 static void refuses(const struct packing *packing, struct dem_liquid liquid,
                     const char *why)
 {
-    const struct dem_setup setup = loose_setup(packing, &liquid);
-    struct dem *dem;
-    struct reason reason = {""};
-    assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
-    assert_null(dem);
-    if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
+    assert_refused(loose_setup(packing, &liquid), why);
 }
 
 static void test_refuses_what_it_cannot(void **state)

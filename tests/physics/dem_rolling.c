@@ -280,28 +280,19 @@ static void test_width_makes_no_difference(void **state)
     }
 }
 
-static void refuses(struct dem_setup setup, const char *why)
-{
-    struct dem *dem;
-    struct reason reason = {""};
-    assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
-    assert_null(dem);
-    if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
-}
-
 static void test_refuses_what_it_cannot(void **state)
 {
     (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     setup.material.rolling_friction = 0.1;
-    refuses(setup, "does not go with bonds");
+    assert_refused(setup, "does not go with bonds");
     setup.material.rolling_friction = -0.1;
-    refuses(setup, "rolling friction must be >= 0, got -0.1");
+    assert_refused(setup, "rolling friction must be >= 0, got -0.1");
     setup.material.rolling_friction = 0;
     const double pairs = INFINITY;
     setup.pair_rolling_friction = &pairs;
-    refuses(setup, "materials 0 and 0: rolling friction");
+    assert_refused(setup, "materials 0 and 0: rolling friction");
     packing_free(&packing);
 }
 

@@ -171,4 +171,14 @@ static inline void keeps_momentum(struct dem_setup setup, const double speed)
     dem_free(dem);
 }
 
+// Dynamics that cannot be made, for a reason that says WHY.
+static inline void assert_refused(struct dem_setup setup, const char *why)
+{
+    struct dem *dem;
+    struct reason reason = {""};
+    assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
+    assert_null(dem);
+    if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
+}
+
 #endif
