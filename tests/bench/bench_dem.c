@@ -14,6 +14,7 @@
 //                                       driven: grip with a layer of a sixth of the
 //                                       grains in a group that turns
 #include "basics/memory.h"
+#include "basics/progress.h"
 #include "dem/engine.h"
 #include "geometry/neighbours.h"
 
@@ -21,7 +22,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 // Counted from pair_*.h and grains.c: operations, a fused one as two, and the
 // bytes that stream through, written ones twice. What a pair reads of its grains and
@@ -55,13 +55,6 @@ static struct cost cost_of_step(const struct dem *dem)
                              (dem->n_wall_pair > 0 ? 4 : 0);
     return (struct cost){grain.flops + pairs * pair.flops,
                          grain.bytes + as_needed + pairs * pair.bytes};
-}
-
-static double now(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static struct packing cubic_lattice(int nx, int ny, int nz)
@@ -111,10 +104,10 @@ static double particle_steps(struct dem *dem, int turns)
     const int cycles = 1 + 4000000 / dem->n_particle;
     double best = 0;
     for (int k = 0; k < turns; k++) {
-        const double start = now();
+        const double start = seconds_now();
         if (dem_run(dem, cycles, &reason) != STATUS_OK)
             die(STATUS_INTERNAL, "%s", reason.text);
-        best = fmax(best, (double)cycles * dem->n_particle / (now() - start));
+        best = fmax(best, (double)cycles * dem->n_particle / (seconds_now() - start));
     }
     return best;
 }
@@ -140,11 +133,11 @@ typedef double wide __attribute__((vector_size(64)));
         const vector a = (vector){0} + 0.999999, b = (vector){0} + 1e-9;               \
         EACH(BEGIN)                                                                    \
         const int turns = 10000000;                                                    \
-        const double start = now();                                                    \
+        const double start = seconds_now();                                            \
         for (int i = 0; i < turns; i++) {                                              \
             EACH(step)                                                                 \
         }                                                                              \
-        return 12.0 * 2 * turns * (sizeof(vector) / 8) / (now() - start);              \
+        return 12.0 * 2 * turns * (sizeof(vector) / 8) / (seconds_now() - start);      \
     }
 
 PEAK(peak_narrow, narrow, APART)
@@ -165,13 +158,13 @@ static double triad(size_t bytes)
         b[k] = c[k] = (double)k;
     const int turns = (int)(1 + (size_t)400000000 / bytes);
     for (int again = 0; again < 5; again++) {
-        const double start = now();
+        const double start = seconds_now();
         for (int i = 0; i < turns; i++) {
             for (size_t k = 0; k < n; k++)
                 a[k] = b[k] + 3.0 * c[k];
             __asm__ volatile("" ::"r"(a) : "memory");
         }
-        best = fmax(best, (double)turns * (double)n * 24 / (now() - start));
+        best = fmax(best, (double)turns * (double)n * 24 / (seconds_now() - start));
     }
     free(a);
     free(b);
@@ -292,10 +285,10 @@ static int one_packing(const char *path, const char *kind, int threads)
     const int64_t cycles = 1 + (int64_t)(3 * rough / dem->n_particle);
     if (dem_run(dem, 1 + cycles / 10, &reason) != STATUS_OK)
         die(STATUS_INTERNAL, "%s", reason.text);
-    const double start = now();
+    const double start = seconds_now();
     if (dem_run(dem, cycles, &reason) != STATUS_OK)
         die(STATUS_INTERNAL, "%s", reason.text);
-    const double rate = (double)cycles * dem->n_particle / (now() - start);
+    const double rate = (double)cycles * dem->n_particle / (seconds_now() - start);
     const struct cost step = cost_of_step(dem);
     printf("%.0f particle-steps/s, %.2f pairs a grain, %.1f Gflop/s, %.1f GB/s\n", rate,
            (double)dem->pairs.n_pair / dem->n_particle, 1e-9 * rate * step.flops,
