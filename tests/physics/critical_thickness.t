@@ -1,0 +1,98 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""At which strain a layer cracks, and Griffith's strain, as `make critical-thickness` reports them: against
+finite elements for what a crack on a rigid floor releases, and a lattice in closed form."""
+import json
+import math
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import spsolve
+
+sys.path.insert(0, "tests")
+from tap import done, ok, run, scratch
+
+REPORT = "pipelines/studies/critical-thickness/report"
+with open(REPORT, encoding="utf-8") as file:
+    RELEASED = float(re.search(r"^RELEASED = (.*)$", file.read(), re.M)[1])
+
+
+def stiffness(a, b, matrix):
+    """Of a bilinear element of sides A and B, by 2 x 2 Gauss points."""
+    total, at = np.zeros((8, 8)), 1 / math.sqrt(3)
+    for s in -at, at:
+        for t in -at, at:
+            along_x = np.array([t - 1, 1 - t, 1 + t, -1 - t]) / (2 * a)
+            along_y = np.array([s - 1, -1 - s, 1 + s, 1 - s]) / (2 * b)
+            strain = np.zeros((3, 8))
+            strain[0, 0::2] = strain[2, 1::2] = along_x
+            strain[1, 1::2] = strain[2, 0::2] = along_y
+            total += strain.T @ matrix @ strain * a * b / 4
+    return total
+
+
+def released(nu, count):
+    """Z of G = Z sigma^2 h / E', E' = E/(1 - nu^2): the opening of a crack through a layer of height 1 and
+    modulus 1 on a rigid floor in plane strain, under the stress 1 on its faces. COUNT elements over the
+    height, finer near the floor and the crack."""
+    x, y = 5 * np.linspace(0, 1, 2 * count + 1) ** 2, np.linspace(0, 1, count + 1) ** 1.5
+    lame, shear = nu / ((1 + nu) * (1 - 2 * nu)), 1 / (2 * (1 + nu))
+    matrix = np.array([[lame + 2 * shear, lame, 0], [lame, lame + 2 * shear, 0], [0, 0, shear]])
+    node = np.arange(len(x) * len(y)).reshape(len(x), len(y))
+    entries, load = [], np.zeros(2 * node.size)
+    for i in range(len(x) - 1):
+        for j in range(count):
+            corner = np.array([node[i, j], node[i + 1, j], node[i + 1, j + 1], node[i, j + 1]])
+            place = np.stack([2 * corner, 2 * corner + 1], axis=1).ravel()
+            entries.append((np.repeat(place, 8), np.tile(place, 8),
+                            stiffness(x[i + 1] - x[i], y[j + 1] - y[j], matrix).ravel()))
+    for j in range(count):
+        load[2 * node[0, j:j + 2]] -= (y[j + 1] - y[j]) / 2
+    rows, columns, values = map(np.concatenate, zip(*entries))
+    held = np.union1d(np.concatenate([2 * node[:, 0], 2 * node[:, 0] + 1]), 2 * node[-1])
+    free = np.setdiff1d(np.arange(2 * node.size), held)
+    whole = coo_matrix((values, (rows, columns))).tocsc()
+    return load[free] @ spsolve(whole[free][:, free], load[free]) / (1 - nu * nu)
+
+
+with open("samples/craquelure-40.json", encoding="utf-8") as file:
+    bond = json.load(file)["dem-replay"]["bond"]
+ratio = bond["shear_stiffness"] / bond["normal_stiffness"]
+found = [released((1 - ratio) / (4 + ratio), count) for count in (8, 16)]
+ok(abs(found[1] - found[0]) < 0.01 and abs(found[1] - RELEASED) < 0.01, "what a crack on a rigid floor releases", found)
+
+# A lattice of touching grains: all bonds along it break at the strain s/(k 2R), and it carries k A 2R e
+# in every one of them.
+RADIUS, SIDE, STRENGTH, STIFFNESS = 0.26e-6, 6, 2e5, 5e13
+AREA = math.pi * (0.5 * RADIUS) ** 2
+SCENE = {"pack": {"method": "cubic", "radius": RADIUS, "counts": [SIDE, SIDE, SIDE], "periodic": [True, True, False]},
+         "dem-replay": {"density": 2500, "normal_stiffness": 10, "shear_stiffness": 10,
+                        "bond": {"normal_stiffness": STIFFNESS, "shear_stiffness": 2e13, "normal_strength": STRENGTH,
+                                 "shear_strength": 1e12, "radius_fraction": 0.5},
+                        "shrinkage": {"strain": 0.01, "steps": 40}, "cycles": 256, "ramp": 0, "tolerance": 1e-6,
+                        "snapshots": [0]}}
+with scratch() as folder:
+    def at(name):
+        return os.path.join(folder, name)
+
+    with open(at("layer.json"), "w", encoding="utf-8") as file:
+        json.dump(SCENE, file)
+    os.mkdir(at("6-1"))
+    run("pack", "-q", "-p", at("layer.json"), "-o", at("layer.h5"))
+    run("dem-replay", "-q", "-p", at("layer.json"), at("layer.h5"), "-o", at("6-1/response.h5"))
+    subprocess.run([REPORT, "table", at("6-1/response.h5"), at("table.md")], check=True)
+    with open(at("table.md"), encoding="utf-8") as file:
+        cells = [float(cell) for cell in file.read().splitlines()[2].strip("|").split("|")]
+    breaks = STRENGTH / (STIFFNESS * 2 * RADIUS)
+    ok(breaks - 0.01 / 40 < cells[1] <= breaks, "a lattice cracks at the last step below its strain at rupture", cells)
+    layers, depth = SIDE - 1, 2 * RADIUS * SIDE - RADIUS
+    slope = layers * STIFFNESS * AREA
+    energy = STRENGTH ** 2 * AREA / (2 * STIFFNESS) * layers / (2 * RADIUS * depth)
+    nu = (1 - 0.4) / (4 + 0.4)
+    griffith = math.sqrt(energy / (RELEASED * (1 + nu) * slope))
+    ok(abs(cells[3] - griffith) < 1e-4 and cells[2] == 0, "Griffith's strain of a lattice", f"{cells} {griffith}")
+done()
