@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The picture of a study. Variables: tables, the folder of the tables that pipelines/study/figure.py
 # makes; kind; panels, their number and their titles with | between; names of the series likewise;
-# xtitle, ytitle, logarithmic; step, between the labels of x; name, of the study; ranges of the
-# panels, where their values have none.
+# xtitle, ytitle, logarithmic; xrange, and step, between the labels of x, or xmarks, these labels; name,
+# of the study; ranges of the panels, where their values have none.
 columns = panels < 4 ? panels : (panels + 1) / 2
 lines = (panels + columns - 1) / columns
 set terminal @svg "Helvetica,14" size 60 + 340 * columns, 40 + 330 * lines noenhanced
@@ -23,7 +23,10 @@ do for [m = 0:panels - 1] {
     range = strlen(part(ranges, m + 1)) ? part(ranges, m + 1) : "[*:*]"
     if (kind eq "map") { eval "set cbrange " . range } else { eval "set yrange " . range }
     if (kind eq "curves") {
+        eval "set xrange " . xrange
         if (logarithmic) { set logscale x; set format x "%.2g" } else { set xtics step }
+        if (strlen(xmarks)) { set xtics (part(xmarks, 1) real(part(xmarks, 1))) }
+        do for [k = 2:parts(xmarks)] { set xtics add (part(xmarks, k) real(part(xmarks, k))) }
         set xlabel xtitle offset 0,0.3
         plot for [s = 0:count - 1] sprintf("%s/curve-%d-%d", tables, m, s) using 1:3:4 with filledcurves \
                 linecolor rgb series[1 + s % 6] notitle, \

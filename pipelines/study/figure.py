@@ -57,7 +57,7 @@ def curves(rows, summary, study):
                                         for x, v, _ in found] or ["NaN NaN NaN NaN"]
             tables[f"reference-{m}-{s}"] = [(x, r) for x, _, r in found if r is not None] or ["NaN NaN"]
     return tables, {"names": "|".join(name for name, _ in series), "xtitle": titled(axis),
-                    "step": step_of(axis.values), "logarithmic": int(axis.log)}
+                    "step": step_of(axis.values), "logarithmic": int(axis.log), "xrange": span_of(axis), "xmarks": marks_of(axis)}
 
 
 def strip(rows, summary, study):
@@ -95,6 +95,22 @@ def scatter(rows, summary, study):
               for k, a in enumerate(axes)}
     return tables, {"titles": "|".join(titled(a) for a in axes), "panels": len(axes),
                     "ytitle": measure.title + (f", {measure.unit}" if measure.unit else "")}
+
+
+def span_of(axis):
+    """The range of an axis for gnuplot: the same in all panels, with a margin."""
+    first, last = min(axis.values), max(axis.values)
+    if axis.log:
+        margin = (last / first) ** 0.04 if last > first else 1.1
+        return f"[{first / margin:.9g}:{last * margin:.9g}]"
+    margin = 0.04 * (last - first) or 0.1 * abs(first) or 1
+    return f"[{first - margin:.9g}:{last + margin:.9g}]"
+
+
+def marks_of(axis):
+    """Labels of a logarithmic axis on which there are hardly any powers of ten; "" for gnuplot's own."""
+    few = axis.log and len(axis.values) <= 10 and max(axis.values) < 30 * min(axis.values)
+    return "|".join(f"{x:.3g}" for x in axis.values) if few else ""
 
 
 def step_of(values):
