@@ -104,8 +104,8 @@ enum status restore_drainage(const struct array_list *list, struct drainage *dra
                              struct drainage_history *history, const struct load *load,
                              int n_particle, struct reason *reason)
 {
-    const int n = drainage->liquid.n, rows = load->n_time;
-    const int64_t n_dry = load->drained ? (int64_t)rows * n_particle : 0;
+    const int n = drainage->liquid.n;
+    const int64_t rows = load->n_time, n_dry = load->drained ? rows * n_particle : 0;
     struct array_reader from = {.list = list, .reason = reason};
     const uint8_t *gas = read_array(&from, "pore_gas", ARRAY_UINT8, n, 0, 1);
     const double *volume =

@@ -28,9 +28,9 @@ double seconds_now(void);
 // over all modes.
 struct progress progress_begin(enum progress_mode mode, bool quiet);
 
-// FRACTION done, 0 to 1, of PROGRESS, a struct progress: computations call it back.
+// FRACTION done, 0 to 1, of the struct progress at OF: computations call it back.
 // Cheap: draws at most ten times a second.
-void progress_update(void *progress, double fraction);
+void progress_update(void *of, double fraction);
 
 // The time left (s) when FRACTION has been done ELAPSED seconds after the beginning,
 // and LEFT (below 0: nothing) was said SINCE seconds ago. Work is seldom even: what is
