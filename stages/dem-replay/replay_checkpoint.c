@@ -69,30 +69,35 @@ static void save_snapshots(struct array_list *list, const struct response *respo
     free(intact);
 }
 
-// Members of a snapshot that have a number of each grain; of all snapshots or none.
-typedef double **numbers_of(struct snapshot *);
-
-static double **dryness_of(struct snapshot *snapshot)
+double **snapshot_dryness(struct snapshot *snapshot)
 {
     return &snapshot->dryness;
 }
 
-static double **shrinkage_of(struct snapshot *snapshot)
+double **snapshot_shrinkage(struct snapshot *snapshot)
 {
     return &snapshot->shrinkage;
 }
 
-static void save_numbers(struct array_list *list, const char *name, numbers_of *of,
-                         const struct response *response, const struct packing *packing)
+double *join_numbers(const struct response *response, snapshot_numbers *of, int n)
 {
-    const size_t count = (size_t)response->n_snapshot;
-    const size_t n = (size_t)packing->n_particle;
-    if (count == 0 || !*of(response->snapshot)) return;
-    double *number = NEW_ARRAY(double, count *n);
-    for (size_t s = 0; s < count; s++)
-        memcpy(number + s * n, *of(&response->snapshot[s]), n * sizeof *number);
-    add_array(list, name, ARRAY_FLOAT64, (int64_t)(count * n), number);
-    free(number);
+    double *all = NEW_ARRAY(double, (size_t)response->n_snapshot *(size_t)n);
+    for (int s = 0; s < response->n_snapshot; s++)
+        memcpy(all + (size_t)s * (size_t)n, *of(&response->snapshot[s]),
+               (size_t)n * sizeof *all);
+    return all;
+}
+
+// Of all snapshots or of none.
+static void save_numbers(struct array_list *list, const char *name,
+                         snapshot_numbers *of, const struct response *response,
+                         const struct packing *packing)
+{
+    const int n = packing->n_particle;
+    if (response->n_snapshot == 0 || !*of(response->snapshot)) return;
+    double *all = join_numbers(response, of, n);
+    add_array(list, name, ARRAY_FLOAT64, (int64_t)response->n_snapshot * n, all);
+    free(all);
 }
 
 // The contacts of all snapshots, one after the other.
@@ -184,8 +189,8 @@ struct array_list save_response(const struct response *response,
               !isnan(response->weight_unbalanced_ratio),
               &response->weight_unbalanced_ratio);
     save_snapshots(&list, response, packing);
-    save_numbers(&list, dryness_name, dryness_of, response, packing);
-    save_numbers(&list, shrinkage_name, shrinkage_of, response, packing);
+    save_numbers(&list, dryness_name, snapshot_dryness, response, packing);
+    save_numbers(&list, shrinkage_name, snapshot_shrinkage, response, packing);
     save_contacts(&list, response);
     return list;
 }
@@ -380,7 +385,7 @@ static enum status restore_snapshots(struct response *response,
 
 // From 0 to 1.
 static enum status restore_numbers(struct response *response, const char *name,
-                                   numbers_of *of, const struct packing *packing,
+                                   snapshot_numbers *of, const struct packing *packing,
                                    struct array_reader *reader)
 {
     const int64_t n = packing->n_particle;
@@ -487,10 +492,11 @@ enum status restore_response(struct response *response, const struct packing *pa
     if (status == STATUS_OK)
         status = restore_snapshots(response, packing, load, most_snapshots, &reader);
     if (status == STATUS_OK && load->drains)
-        status = restore_numbers(response, dryness_name, dryness_of, packing, &reader);
-    if (status == STATUS_OK && load->shrinks)
         status =
-            restore_numbers(response, shrinkage_name, shrinkage_of, packing, &reader);
+            restore_numbers(response, dryness_name, snapshot_dryness, packing, &reader);
+    if (status == STATUS_OK && load->shrinks)
+        status = restore_numbers(response, shrinkage_name, snapshot_shrinkage, packing,
+                                 &reader);
     if (status == STATUS_OK) status = restore_contacts(response, packing, &reader);
     return status;
 }

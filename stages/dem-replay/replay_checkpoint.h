@@ -20,6 +20,15 @@ struct replay_place {
     int64_t began; // cycle of the engine when the step began
 };
 
+// A number of each grain that a snapshot has, (n_particle); NULL: it has none.
+typedef double **snapshot_numbers(struct snapshot *);
+double **snapshot_dryness(struct snapshot *snapshot);
+double **snapshot_shrinkage(struct snapshot *snapshot);
+
+// These of all snapshots of RESPONSE, (n_snapshot, N), N the number of grains; each
+// must have them. The caller frees it.
+double *join_numbers(const struct response *response, snapshot_numbers *of, int n);
+
 // RESPONSE and PLACE as a new list, which keep_state frees. N_TIME: rows of the load.
 // Its size grows with snapshots and their contacts, not with the cycles done.
 struct array_list save_response(const struct response *response,

@@ -22,6 +22,7 @@
 #include "basics/memory.h"
 #include "geometry/fragments.h"
 #include "geometry/neighbours.h"
+#include "replay_checkpoint.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -236,28 +237,13 @@ static void put_snapshots(struct artifact *artifact, const struct packing *packi
     free(intact);
 }
 
-static const double *dryness_of(const struct snapshot *snapshot)
-{
-    return snapshot->dryness;
-}
-
-static const double *shrinkage_of(const struct snapshot *snapshot)
-{
-    return snapshot->shrinkage;
-}
-
 // A number of each of N grains, at each snapshot.
 static void put_numbers(struct artifact *artifact, const char *name,
-                        const double *(*of)(const struct snapshot *), int n,
-                        const struct response *response)
+                        snapshot_numbers *of, int n, const struct response *response)
 {
-    const int count = response->n_snapshot;
-    double *number = NEW_ARRAY(double, (size_t)count *(size_t)n);
-    for (int s = 0; s < count; s++)
-        memcpy(number + (size_t)s * (size_t)n, of(&response->snapshot[s]),
-               (size_t)n * sizeof *number);
-    artifact_put_table(artifact, name, number, count, n);
-    free(number);
+    double *all = join_numbers(response, of, n);
+    artifact_put_table(artifact, name, all, response->n_snapshot, n);
+    free(all);
 }
 
 // Pieces of SNAPSHOT: grains that intact bonds join.
@@ -312,11 +298,11 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     free(contacts.pair);
     put_snapshots(artifact, packing, response);
     if (load->drains)
-        put_numbers(artifact, "/snapshots/dryness", dryness_of, packing->n_particle,
-                    response);
+        put_numbers(artifact, "/snapshots/dryness", snapshot_dryness,
+                    packing->n_particle, response);
     if (load->shrinks)
-        put_numbers(artifact, "/snapshots/shrinkage", shrinkage_of, packing->n_particle,
-                    response);
+        put_numbers(artifact, "/snapshots/shrinkage", snapshot_shrinkage,
+                    packing->n_particle, response);
     artifact_put_number(artifact, "/summary/cracks", response->n_crack);
     artifact_put_number(artifact, "/summary/steps_unsettled", response->n_unsettled);
     artifact_put_number(artifact, "/summary/largest_displacement",
