@@ -337,10 +337,10 @@ static void shrink_to(struct run *run, double share)
 // step.
 static void shrink(struct run *run)
 {
-    const int64_t done = dem_cycle(dem_of(run)) - run->place.began - ramp(run);
-    if (done < 0 || done >= run->settings->cycles) return;
     const int64_t since = dem_cycle(dem_of(run)) - run->place.began;
-    const int64_t next = done + load_holds(run) - since % load_holds(run);
+    const int64_t done = since - ramp(run), holds = load_holds(run);
+    if (done < 0 || done >= run->settings->cycles) return;
+    const int64_t next = done + holds - since % holds;
     shrink_to(run, fmin(1, (double)next / (double)run->settings->cycles));
 }
 
@@ -569,7 +569,8 @@ static enum status advance(struct run *run, struct reason *reason)
         status = run_cycles(run, 1, reason);
     }
     const int64_t left = full + run->settings->cycles - dem_cycle(dem_of(run));
-    if (!status && left == run->settings->cycles) shrink(run);
+    // Without a ramp apply_forces has.
+    if (!status && ramp(run) > 0 && left == run->settings->cycles) shrink(run);
     if (!status) status = run_cycles(run, left, reason);
     if (status || !run->load->drains) return status ? status : run_on(run, reason);
     status = drain(run, reason);
