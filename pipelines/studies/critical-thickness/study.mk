@@ -18,7 +18,7 @@ critical/6 := 3.12 3.64 15.6 12.48
 critical/8 := 4.16 4.68 20.8 16.64
 critical/12 := 6.24 6.76 31.2 24.96
 
-critical-thickness: ## at which strain layers crack, beside Griffith's criterion (ten minutes of one core)
+critical-thickness: ## at which strain layers crack, beside Griffith's criterion
 
 ifneq ($(call asked,critical-thickness,$(critical)),)
 critical_pack = slab.upper=$(word 1,$1)e-6 upper=[$(word 3,$1)e-6,$(word 4,$1)e-6,$(word 2,$1)e-6]
