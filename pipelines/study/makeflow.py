@@ -11,7 +11,7 @@ from plan import Artifact
 def rule_of(path, inputs, key, command):
     """tools/memo keeps what it makes as `make study` does, so that either goes on where the other ended."""
     words = rules.quoted([rules.MEMO, "run", *key, "--", *command])
-    return {"command": f"mkdir -p {os.path.dirname(path)} && {words}", "inputs": inputs, "outputs": [path]}
+    return {"command": words, "inputs": inputs, "outputs": [path]}
 
 
 def write_rules(plan, made, stale, folder):

@@ -177,10 +177,10 @@ def recipe_of(parts, launcher, threads):
     key += [f"input={each}" for each in outer] + [f"output={last.path}"]
     if len(parts) == 1:
         return key, words_of(last, lambda each: each.path if isinstance(each, Artifact) else each, launcher, threads)
-    # what is folded lies in a folder that `chain` makes and removes: @NAME
+    # what is folded lies in a folder that memo makes and removes: @NAME
     short = lambda each: f"@{each.kind}.{each.path.rsplit('.', 1)[1]}" if id(each) in inner else \
         each.path if isinstance(each, Artifact) else each
-    command = [os.path.join(TREE, "pipelines/study/chain")]
+    command = []
     for part in parts:
         command += [*words_of(part, short, launcher, threads), "--then"]
     return key, command[:-1]
