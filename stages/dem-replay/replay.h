@@ -132,6 +132,8 @@ struct response {
                                // drains
     struct net_load *reaction; // (n_time) of supports on the grains, or in place of
                                // them: what was taken off, the other way
+    double most_at_once; // by which a grain shrank between two time steps, a strain;
+                         // since the checkpoint that the replay went on from
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static

@@ -125,8 +125,12 @@ static void shrink_to(struct run *run, double share)
     find_due(run, row - 1, from);
     find_due(run, row, to);
     dem_shrinkage(dem_of(run), strain);
-    for (int i = 0; i < n; i++)
-        strain[i] = fmax(strain[i], from[i] + share * (to[i] - from[i]));
+    for (int i = 0; i < n; i++) {
+        const double before = strain[i];
+        strain[i] = fmax(before, from[i] + share * (to[i] - from[i]));
+        run->response->most_at_once =
+            fmax(run->response->most_at_once, strain[i] - before);
+    }
     dem_set_shrinkage(dem_of(run), strain);
     free(from);
     free(to);

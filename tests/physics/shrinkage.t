@@ -199,6 +199,16 @@ with scratch() as folder:
     ok(refused("dem-replay", "-p", at("layer.json"), at("extra.h5"), "-o", at("no.h5")),
        "auxiliary grains of a boundary layer: refused")
 
+    # A step shrinks in 8 portions of 64 time steps, of STRAIN/32 each.
+    def said(breaks):
+        strength = breaks * STIFFNESS * 2 * RADIUS
+        return subprocess.run(
+            [f"{BIN}/dem-replay", "-p", at("layer.json"), "-s", f"bond.normal_strength={strength}", at("layer.h5"),
+             "-o", at("sudden.h5")], capture_output=True, text=True).stderr
+
+    ok(f"by up to {STRAIN / 32:.2g} at once" in said(3.9 * STRAIN / 32) and "at once" not in said(4.1 * STRAIN / 32),
+       "shrinkage of more than a quarter of what breaks a bond at once: said")
+
     # A load in two pieces, of which the second knows nothing of the first but its state.
     def piece(name, first, last):
         shutil.copy(at("f.h5"), at(name))
