@@ -9,5 +9,7 @@ set xlabel "thickness, mean diameters"; set ylabel "shrinkage strain"
 set key bottom left Left reverse
 file(name) = tables . "/" . name
 plot file("mean") using 1:2 with lines linewidth 2 linecolor rgb blue title "layers crack", \
+    file("grown") using 1:2 with lines linewidth 2 linecolor rgb red title "a slit in them grows", \
+    file("slits") with points pointtype 6 pointsize 0.8 linecolor rgb red notitle, \
     file("layers") with points pointtype 7 pointsize 0.6 linecolor rgb blue notitle, \
     file("mean") using 1:3 with lines dashtype 2 linewidth 2 linecolor rgb grey title "Griffith: below it no crack can run"

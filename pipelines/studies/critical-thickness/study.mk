@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # At which strain do layers of different thickness crack, beside Griffith's criterion for a
-# constrained film? Each shrinks evenly:
+# constrained film? At which does a slit in them grow? Each shrinks evenly:
 #
 #     make critical-thickness                     ->  build/runs/critical-thickness/table.md, strains.svg
 #     make critical-thickness CRITICAL_SEEDS="1"  ->  the same of one packing
@@ -10,6 +10,7 @@ CRITICAL_SEEDS ?= 1 2 3# of the packings
 critical := $(RUNS)/critical-thickness
 critical_scene := samples/craquelure-40.json
 critical_thicknesses := 3 4 6 8 12
+critical_slit := 6 8 12# thinner ones crack elsewhere before the slit grows
 # By thickness in mean diameters of 0.52 um: heights of the layer and of the packing it is cut from,
 # and sides of the box, 5 and 4 thicknesses, in um.
 critical/3 := 1.56 2.08 7.8 6.24
@@ -22,16 +23,25 @@ critical-thickness: ## at which strain layers crack, beside Griffith's criterion
 
 ifneq ($(call asked,critical-thickness,$(critical)),)
 critical_pack = slab.upper=$(word 1,$1)e-6 upper=[$(word 3,$1)e-6,$(word 4,$1)e-6,$(word 2,$1)e-6]
-# Loading takes time in proportion to the thickness $1, as waves do.
-critical_load = shrinkage.law=uniform shrinkage.strain=0.02 shrinkage.steps=40 snapshots=[0] \
+# Loading takes time in proportion to the thickness $1, as waves do. To the strain $2 in $3 steps.
+critical_load = shrinkage.law=uniform shrinkage.strain=$2 shrinkage.steps=$3 snapshots=[0] \
 	cycles=$(shell echo $$((16 * $1))) most_cycles=$(shell echo $$((64 * $1)))
 # Of thickness $1 and seed $2, in folder $3.
 define critical_layer
 $(call pack,$3/packing.h5,$(critical_scene),seed=$2 $(call critical_pack,$(critical/$1)),)
-$(call dem-replay,$3/response.h5,$(critical_scene),$(call critical_load,$1),$3/packing.h5)
+$(call dem-replay,$3/response.h5,$(critical_scene),$(call critical_load,$1,0.02,40),$3/packing.h5)
+endef
+critical_import := method=import periodic=[true,true,false] upper=null slab.lower=null slab.upper=null
+# The layer in folder $2, of thickness $1, with a slit: in folder $2-slit.
+define critical_slit_layer
+$(call report,$2-slit/grains.dump,studies/critical-thickness/slit,$2/packing.h5,$2/packing.h5 $1)
+$(call pack,$2-slit/packing.h5,$(critical_scene),$(critical_import),$2-slit/grains.dump)
+$(call dem-replay,$2-slit/response.h5,$(critical_scene),$(call critical_load,$1,0.0135,27),$2-slit/packing.h5)
 endef
 $(foreach h,$(critical_thicknesses),$(foreach s,$(CRITICAL_SEEDS),$(call critical_layer,$h,$s,$(critical)/$h-$s)))
-critical_responses := $(foreach h,$(critical_thicknesses),$(CRITICAL_SEEDS:%=$(critical)/$h-%/response.h5))
+$(foreach h,$(critical_slit),$(foreach s,$(CRITICAL_SEEDS),$(call critical_slit_layer,$h,$(critical)/$h-$s)))
+critical_responses := $(foreach h,$(critical_thicknesses),$(CRITICAL_SEEDS:%=$(critical)/$h-%/response.h5)) \
+	$(foreach h,$(critical_slit),$(CRITICAL_SEEDS:%=$(critical)/$h-%-slit/response.h5))
 $(call report,$(critical)/table.md,studies/critical-thickness/report,$(critical_responses),table $(critical_responses))
 $(call report,$(critical)/strains.svg,studies/critical-thickness/report,$(critical_responses),figure $(critical_responses))
 
