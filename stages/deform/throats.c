@@ -124,25 +124,6 @@ static double product(struct vector edge)
     return edge.x * edge.y * edge.z;
 }
 
-static double volume_of(const struct body *body)
-{
-    static const double share[] = {[BODY_BOX] = 1,
-                                   [BODY_CYLINDER] = M_PI / 4,
-                                   [BODY_SPHERE] = M_PI / 6,
-                                   [BODY_DISC] = M_PI / 4};
-    return share[body->shape] * product(subtract(body->upper, body->lower));
-}
-
-double packing_domain_volume(const struct packing *packing)
-{
-    double room = product(subtract(packing->upper, packing->lower)), holes = 0;
-    for (int k = 0; k < packing->n_body; k++) {
-        if (packing->body[k].within) room = volume_of(&packing->body[k]);
-        if (!packing->body[k].within) holes += volume_of(&packing->body[k]);
-    }
-    return room - holes;
-}
-
 // The void of the domain, m3: its volume without all solid in the box, where what two
 // grains share counts once (geometry/porosity.h).
 static double void_of(const struct packing *packing)

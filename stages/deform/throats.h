@@ -41,9 +41,6 @@ enum status move_volumes(const struct network *before, bool changed,
 enum status move_shapes(const struct network *before, bool changed,
                         struct network *after, struct reason *reason);
 
-// Volume of the box, or of the body within it, without what is cut out, m3.
-double packing_domain_volume(const struct packing *packing);
-
 // Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.
 int count_closed_throats(const struct network *before, const struct network *after);
 

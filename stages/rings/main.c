@@ -3,7 +3,8 @@
 // when throats have emptied, over suction, and the stress by which it holds the body:
 //     content    = volume of rings / volume of grains,
 //     saturation = volume of rings / void volume of the box,
-//     stress     = trace of pull / 3 / box volume        (retained.h).
+//     stress     = trace of pull / 3 / box volume        (retained.h);
+// where the grains lie within a round body, its volume stands for that of the box.
 // Suctions are the user's, or evenly spread on a logarithmic axis, in units of surface
 // tension over the mean radius.
 #include "artifacts/artifact.h"
@@ -11,6 +12,7 @@
 #include "geometry/neighbours.h"
 #include "geometry/porosity.h"
 #include "parameters/conditions.h"
+#include "repeated.h"
 #include "retained.h"
 
 #include <math.h>
@@ -73,10 +75,25 @@ static double *suctions_of(const struct rings_parameters *given, double unit,
     return suction;
 }
 
-static double box_volume(const struct packing *packing)
+// The packing, repeated where grains may meet by several images: the largest distance
+// of two centres with a ring between them is two largest radii and the gap. That is at
+// most 2 tension / suction wide, and below the largest radius even at no suction: a
+// catenoid spans 0.4 of it between equal spheres, less between unequal ones.
+static struct packing wide_packing(const struct packing *packing, double suction,
+                                   double tension, const char *name, int *copies)
 {
+    double largest = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        largest = fmax(largest, packing->radius[i]);
     const struct vector edge = subtract(packing->upper, packing->lower);
-    return edge.x * edge.y * edge.z;
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis] && component(edge, axis) < largest)
+            die(STATUS_BAD_DATA,
+                "%s: /domain/upper: a box that repeats must be wider than the largest "
+                "radius, %g m, is %g m wide",
+                name, largest, component(edge, axis));
+    const double gap = fmin(2 * tension / suction, largest);
+    return repeated_packing(packing, 2 * largest + gap, copies);
 }
 
 static double volume_of_grains(const struct packing *packing)
@@ -103,44 +120,50 @@ static json_t *tensor(const double of[3][3], double factor)
     return rows;
 }
 
-// BOX and SOLID: volumes of the box and of the grains in it, m3.
+// BOX and SOLID: volumes of the domain and of the grains in it, m3. What IS retained is
+// of so many COPIES of them.
 static void append_row(json_t *report, double box, double solid, double suction,
-                       const struct retained *is)
+                       const struct retained *is, int copies)
 {
     const double trace = is->pull[0][0] + is->pull[1][1] + is->pull[2][2];
+    const double volume = is->volume / copies;
     append(report, "suction", json_real(suction));
-    append(report, "rings", json_integer(is->rings));
-    append(report, "meeting", json_integer(is->meeting));
-    append(report, "volume", json_real(is->volume));
-    append(report, "content", json_real(is->volume / solid));
-    append(report, "saturation", json_real(is->volume / (box - solid)));
-    append(report, "stress", json_real(trace / 3 / box));
-    append(report, "stress_tensor", tensor(is->pull, 1 / box));
+    append(report, "rings", json_integer(lround(1.0 * is->rings / copies)));
+    append(report, "meeting", json_integer(lround(1.0 * is->meeting / copies)));
+    append(report, "volume", json_real(volume));
+    append(report, "content", json_real(volume / solid));
+    append(report, "saturation", json_real(volume / (box - solid)));
+    append(report, "stress", json_real(trace / 3 / box / copies));
+    append(report, "stress_tensor", tensor(is->pull, 1 / (box * copies)));
 }
 
 static json_t *report_of(const struct packing *packing, const struct liquid *liquid,
-                         const struct rings_parameters *given)
+                         const struct rings_parameters *given, const char *name)
 {
     const double radius = mean_radius(packing), unit = liquid->tension / radius;
-    const double box = box_volume(packing), solid = volume_of_grains(packing);
-    int count;
+    int count, copies;
     double *suction = suctions_of(given, unit, &count);
-    struct ring_sites sites = sites_of(packing, suction[0], liquid->tension);
-    json_t *report =
-        json_pack("{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}",
-                  "schema", "craquelure/rings/1", "grains", packing->n_particle,
-                  "mean_radius", radius, "box_volume", box, "solid_volume", solid,
-                  "contacts", sites.contacts, "suction", "rings", "meeting", "volume",
-                  "content", "saturation", "stress", "stress_tensor");
+    struct packing wide =
+        wide_packing(packing, suction[0], liquid->tension, name, &copies);
+    const double box = packing_domain_volume(packing),
+                 solid = volume_of_grains(&wide) / copies;
+    struct ring_sites sites = sites_of(&wide, suction[0], liquid->tension);
+    json_t *report = json_pack(
+        "{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}", "schema",
+        "craquelure/rings/1", "grains", packing->n_particle, "mean_radius", radius,
+        "box_volume", box, "solid_volume", solid, "contacts",
+        (int)lround(1.0 * sites.contacts / copies), "suction", "rings", "meeting",
+        "volume", "content", "saturation", "stress", "stress_tensor");
     for (int k = 0; k < count; k++) {
         struct retained retained;
         struct reason reason;
         const enum status status =
-            retain(packing, &sites, liquid, suction[k], &retained, &reason);
+            retain(&wide, &sites, liquid, suction[k], &retained, &reason);
         if (status) die(status, "%s", reason.text);
-        append_row(report, box, solid, suction[k], &retained);
+        append_row(report, box, solid, suction[k], &retained, copies);
     }
     sites_free(&sites);
+    packing_free(&wide);
     free(suction);
     return report;
 }
@@ -165,7 +188,7 @@ int main(int argc, char **argv)
     const struct liquid liquid = {.tension =
                                       parameters.given.property[FLUID_SURFACE_TENSION],
                                   .angle = parameters.given.contact_angle * M_PI / 180};
-    json_t *report = report_of(&packing, &liquid, &parameters);
+    json_t *report = report_of(&packing, &liquid, &parameters, input_name(input->path));
     char fluid[300], model[800];
     snprintf(model, sizeof model,
              "liquid rings between two grains each, at one suction, joined to other "

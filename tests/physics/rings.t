@@ -114,6 +114,31 @@ solid = 64 * 4 / 3 * pi * R**3
 ok(np.allclose(said["content"], np.array(said["volume"]) / solid, rtol=1e-12) and np.allclose(
     said["saturation"], np.array(said["volume"]) / ((8 * R)**3 - solid), rtol=1e-12), "over grains and void")
 
+# Narrow boxes: grains meet others, and themselves, across several sides.
+cell = packing("cell", [[0.3 * R, R, R, R]], [2 * R] * 3, "periodic=[true,true,true]")
+alone = rings(cell, suctions, 10)
+ok(alone["rings"] == [3, 3] and all(
+    np.allclose(alone[key], said[key], rtol=1e-12, atol=1e-9 * said["stress"][0] if key == "stress_tensor" else 0)
+    for key in ("content", "saturation", "stress", "stress_tensor")), "one grain in its cell is the cubic lattice", alone)
+rng = np.random.default_rng(4)
+grains = np.column_stack([rng.random((5, 3)) * 4 * R, R * (0.7 + 0.6 * rng.random(5))])
+corners = np.stack(np.meshgrid(*[[0, 4 * R]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+eight = np.vstack([grains + [*corner, 0] for corner in corners])
+few = rings(packing("few", grains, [4 * R] * 3, "periodic=[true,true,true]"), suctions, 10)
+many = rings(packing("many", eight, [8 * R] * 3, "periodic=[true,true,true]"), suctions, 10)
+ok(all(np.array_equal(8 * np.array(few[key]), many[key]) for key in ("contacts", "rings", "meeting")) and all(
+    np.allclose(few[key], many[key], rtol=1e-9, atol=0) for key in ("saturation", "stress")),
+   "a few grains of many sizes are eight times as many in eight boxes", (few, many))
+
+# In a cylinder the void is that of the cylinder.
+run("pack", "-q", *sets("method=random_sequential", "count=40", f"radius={R}", "domain.shape=cylinder", f"domain.radius={6 * R}",
+                        f"domain.height={12 * R}", "bonds=none", "check=none"), "-o", at("cylinder"))
+round_body = rings(at("cylinder"), [2 * TENSION / R])
+void = 432 * pi * R**3 - 40 * 4 / 3 * pi * R**3
+ok(round_body["rings"][0] > 0 and abs(round_body["saturation"][0] * void / round_body["volume"][0] - 1) < 1e-9 and abs(
+    np.trace(round_body["stress_tensor"][0]) / 3 / round_body["stress"][0] - 1) < 1e-12
+   and abs(round_body["box_volume"] / (432 * pi * R**3) - 1) < 1e-12, "in a cylinder saturations are of its void", round_body)
+
 # Three grains that touch: rings meet where each fills 30 degrees.
 low, high = 2., 8.
 for _ in range(14):

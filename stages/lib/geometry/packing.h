@@ -89,6 +89,9 @@ struct vector image_offset(const struct packing *packing, struct image image);
 struct vector image_apart(const struct packing *packing, struct vector from,
                           struct vector to, struct image image);
 
+// Volume of the box, or of the body within it, without what is cut out, m3.
+double packing_domain_volume(const struct packing *packing);
+
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);
 
