@@ -82,7 +82,7 @@ def write_script(plan, stale, folder, said, words):
     path = os.path.join(folder, "study.sbatch")
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
-    print(f"{tasks} jobs of {cpus} processors, {memory} MiB each and {minutes} minutes: {path}", flush=True)
+    print(f"{tasks} job{'s' * (tasks > 1)} of {cpus} processor{'s' * (cpus > 1)}, {memory} MiB each and {minutes} minutes: {path}", flush=True)
     return path
 
 

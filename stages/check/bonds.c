@@ -120,8 +120,8 @@ static void say_gap(const struct bond_facts *facts, char text[200])
 {
     if (isnan(facts->gap))
         snprintf(text, 200,
-                 "grains lie too far apart to bond: pack.method=radius_expansion packs "
-                 "them densely");
+                 "grains lie too far apart to bond: pack.method=deposition lets them "
+                 "settle, radius_expansion packs them densely");
     else
         snprintf(
             text, 200,

@@ -91,7 +91,8 @@ static void judge_free(const struct packing_facts *facts, struct findings *findi
 {
     if (!facts->free || facts->n < 2) return;
     add_finding(findings, FINDING_NOTE, "free",
-                "%d of %d grains touch neither grain nor wall", facts->free, facts->n);
+                "%d of %d grains touch%s neither grain nor wall", facts->free, facts->n,
+                facts->free == 1 ? "es" : "");
 }
 
 // Below this share of the capillary forces weight changes little. The larger of both

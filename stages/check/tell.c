@@ -47,13 +47,14 @@ static void tell_facts(const struct checked *checked, FILE *out)
             facts->n, facts->median, facts->tenth, facts->ninetieth, facts->smallest,
             facts->largest);
     fprintf(out,
-            "box        %.3g x %.3g x %.3g m, porosity %.3g, %.2g %% of it empty\n",
+            "box        %.3g x %.3g x %.3g m, porosity %.3g, %.2g %% far from grains\n",
             high.x - low.x, high.y - low.y, high.z - low.z, facts->porosity,
             100 * facts->empty);
     fprintf(out, "contacts   %d, largest overlap %.2g of the smaller radius\n",
             checked->contacts->count, facts->overlap);
-    fprintf(out, "bonds      %d, %.3g a grain; the largest piece has %d grains", n_bond,
-            2.0 * n_bond / facts->n, bonds->largest);
+    fprintf(out, "bonds      %d, %.3g a grain; the largest piece has %d grain%s",
+            n_bond, 2.0 * n_bond / facts->n, bonds->largest,
+            bonds->largest == 1 ? "" : "s");
     if (bonds->at_bottom)
         fprintf(out, ", %d are connected with the %d at the bottom", bonds->supported,
                 bonds->at_bottom);

@@ -61,8 +61,9 @@ static const char *given_input(const struct invocation *invocation, int method)
     if (method == METHOD_IMPORT) return input_name(path ? path : "-");
     if (path && !moves_grains(method))
         die(STATUS_USAGE,
-            "%s: this method takes no input: import, deposition, radius_expansion, "
-            "domain_contraction and explosive_repulsion do",
+            "%s: this pack.method (by default cubic) takes no input: import, "
+            "deposition, "
+            "radius_expansion, domain_contraction and explosive_repulsion do",
             path);
     return path ? input_name(path) : NULL;
 }

@@ -241,8 +241,10 @@ static enum status give_box(const struct pack_parameters *parameters,
     *box = parameters->domain;
     if (box->shape != DOMAIN_BOX || !isnan(box->upper[0])) return STATUS_OK;
     if (!parameters->count)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "pack.count: must be given, or pack.upper: the box to fill");
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "pack.count: must be given, or pack.upper: the box to fill, or grains "
+            "as an input (make run IMPORT=FILE)");
     const int dimensions = (int)parameters->dimensions;
     const double sum = sum_of_sizes(sizes, (int)parameters->count, dimensions, random);
     const double room = sum / (1 - expected_porosity(parameters));

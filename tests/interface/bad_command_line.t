@@ -34,8 +34,8 @@ refused("deform refuses a packing", BAD_DATA, ["deform", "packing", "response"],
 refused("deform refuses a drying in place of a response", BAD_DATA, ["deform", "drying", "drying"],
         "drying: must be a response, is a drying: first run force-protocol, then dem-replay")
 refused("a lattice takes no input", USAGE, ["pack", "packing"],
-        "packing: this method takes no input: import, deposition, radius_expansion, "
-        "domain_contraction and explosive_repulsion do")
+        r"packing: this pack.method \(by default cubic\) takes no input: import, deposition, "
+        "radius_expansion, domain_contraction and explosive_repulsion do")
 refused("inspect takes one input", USAGE, ["inspect", "packing", "packing"],
         "packing: one input only", output=())
 refused("inspect refuses --frames 0", USAGE, ["inspect", "--frames=0", "packing"],

@@ -13,7 +13,7 @@ from refusals import (BAD_DATA, IO, NO_INPUT, READER, attribute, contents, damag
 # ---- not an artifact --------------------------------------------------------------------
 
 refused("text is not an artifact", BAD_DATA,
-        ["tessellate", text_file("text", "1 2 3 4\n")], "text: is not an HDF5 file")
+        ["tessellate", text_file("text", "1 2 3 4\n")], "text: is not an HDF5 file; grains as text go to pack first")
 refused("an empty file is not an artifact", BAD_DATA,
         ["tessellate", text_file("empty", "")], "empty: is empty")
 refused("three bytes are not an artifact", BAD_DATA,

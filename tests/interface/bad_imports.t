@@ -16,13 +16,13 @@ def imported(title, content, line, *settings):
 
 
 imported("a line of three numbers is named", "0 0 0 1\n3 0 0\n",
-         "line 2: must be four numbers, x y z r, or a comment, #")
+         "line 2: must be four numbers, x y z r, or a comment, #; has 3 numbers")
 imported("a line of five numbers is named", "# grains\n\n0 0 0 1 1\n",
-         "line 3: must be four numbers, x y z r, or a comment, #")
+         "line 3: must be four numbers, x y z r, or a comment, #; has 5 numbers")
 imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
          "line 2: must be four numbers, x y z r, or a comment, #")
 imported("the names of columns want a #", "x,y,z,r\n0,0,0,1\n",
-         "line 1: must be four numbers, x y z r, or a comment, #")
+         "line 1: must be four numbers, x y z r, or a comment, #; names of columns want a # before them")
 imported("a negative radius in a text is refused", "0 0 0 -1\n",
          "line 1: the radius must be > 0 m, got -1")
 imported("a radius of zero in a text is refused", "0 0 0 0\n",

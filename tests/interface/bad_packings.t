@@ -92,7 +92,7 @@ scene("a spiral has no hole",
 few = "method=deposition count=100"
 dense = "method=radius_expansion count=100 periodic=[true,true,true]"
 scene("grains that fall need a count or a box", "method=deposition",
-      "pack.count: must be given, or pack.upper: the box to fill")
+      r"pack.count: must be given, or pack.upper: the box to fill, or grains as an input \(make run IMPORT=FILE\)")
 scene("they need a floor", f"{few} periodic=[true,true,true]",
       "pack.periodic: must be false along z for deposition: grains need a floor")
 scene("they settle and nothing else", f"{few} target=porosity target_value=0.4",

@@ -29,14 +29,23 @@
 const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
                                         NULL};
 
-// HDF5 reads from IMAGE itself, not from a copy: it must outlive the file. Parameters
-// given without -p are what JSON here mostly is, so the message says how they go.
+// Parameters given without -p are what JSON here mostly is, and grains what begins with
+// a number or a comment, so the message says how they go.
+static const char *hint_for(char first)
+{
+    if (first == '{') return "; parameters, in JSON, go by -p";
+    return first && strchr("0123456789-.# ", first)
+               ? "; grains as text go to pack first"
+               : "";
+}
+
+// HDF5 reads from IMAGE itself, not from a copy: it must outlive the file.
 static hid_t open_image(const char *path, const struct bytes *image)
 {
     if (image->size == 0) die(STATUS_BAD_DATA, "%s: is empty", input_name(path));
     if (!is_hdf5(image))
         die(STATUS_BAD_DATA, "%s: is not an HDF5 file%s", input_name(path),
-            image->data[0] == '{' ? "; parameters, in JSON, go by -p" : "");
+            hint_for((char)image->data[0]));
     hdf5_begin();
     const hid_t file =
         H5LTopen_file_image(image->data, image->size,

@@ -13,30 +13,35 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Reads one line of at most four numbers; returns how many there were, or -1 for
-// anything that is not a number.
+// Reads the first four numbers of a line; returns how many it has, or -1 where one is a
+// word.
 static int read_numbers(const char *line, double numbers[4])
 {
-    int count = 0;
-    for (;;) {
+    for (int count = 0;; count++) {
         line += strspn(line, " \t\r,;");
         if (!*line || *line == '#') return count;
         char *end;
         const double number = strtod(line, &end);
-        if (end == line || count == 4) return -1;
-        numbers[count++] = number;
+        if (end == line) return -1;
+        if (count < 4) numbers[count] = number;
         line = end;
     }
 }
 
-// NUMBER: of the line, from 1. Radii are checked last, when they are numbers.
-static enum status check_grain(const double grain[4], int count, int number,
+// NUMBER: of the line, from 1. FIRST: no grain has come before, so that words may be
+// the names of columns. Radii are checked last, when they are numbers.
+static enum status check_grain(const double grain[4], int count, int number, bool first,
                                struct reason *reason)
 {
-    if (count != 4)
+    if (count < 0)
         return refuse(reason, STATUS_BAD_DATA,
-                      "line %d: must be four numbers, x y z r, or a comment, #",
-                      number);
+                      "line %d: must be four numbers, x y z r, or a comment, #%s",
+                      number, first ? "; names of columns want a # before them" : "");
+    if (count != 4)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "line %d: must be four numbers, x y z r, or a comment, #; has %d numbers",
+            number, count);
     for (int k = 0; k < 4; k++)
         if (!isfinite(grain[k]))
             return refuse(reason, STATUS_BAD_DATA, "line %d: must be finite, got %g",
@@ -92,7 +97,7 @@ enum status import_text(const struct bytes *text, struct packing *packing,
         const int count = read_numbers(line, grain);
         number++;
         if (count == 0) continue;
-        status = check_grain(grain, count, number, reason);
+        status = check_grain(grain, count, number, !packing->n_particle, reason);
         if (status) break;
         if (packing->n_particle == capacity) {
             capacity = capacity ? 2 * capacity : 64;
