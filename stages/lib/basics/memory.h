@@ -7,6 +7,11 @@
 
 #include <stddef.h>
 
+// Blocks of less than 32 MB are kept for the next one when they are freed, from the
+// start: the kernel takes as long to give them again as a small run takes for the rest.
+// The C library comes to the same by itself, once it has freed blocks of such sizes.
+void keep_freed_memory(void);
+
 // COUNT zeroed elements of SIZE bytes; never NULL, also for COUNT = 0. A product beyond
 // size_t counts as out of memory, here and in reallocate.
 void *allocate(size_t count, size_t size)

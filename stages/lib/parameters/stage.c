@@ -485,6 +485,7 @@ static void check_checkpoint(const struct invocation *invocation)
 struct invocation stage_begin(const struct stage *stage, int argc, char **argv,
                               void *parameters)
 {
+    keep_freed_memory();
     struct invocation invocation = {
         .stage = stage, .checkpoint_every = 600, .threads = 1};
     struct command_line line = {.stage = stage, .invocation = &invocation};
