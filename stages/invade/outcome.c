@@ -9,7 +9,7 @@
 //
 //     saturation_k = (sum of all volumes - sum of those emptied by event k) / all.
 // Trap: throats that gas has passed at both ends without entering are clusters of their
-// own, without a node.
+// own, without a node; or, where pores hold the liquid, none.
 #include "outcome.h"
 
 #include "basics/compensated.h"
@@ -129,6 +129,15 @@ static int liquid_end(const struct network *network, const struct outcome *outco
     return -1;
 }
 
+// Whether any piece of THROAT is liquid in the end.
+static bool is_left(const struct network *network, const struct outcome *outcome,
+                    int throat)
+{
+    int32_t event[2];
+    const int pieces = events_of_pieces(network, outcome, throat, event);
+    return event[0] == LIQUID || event[pieces - 1] == LIQUID;
+}
+
 static void add_to_cluster(const struct network *network, struct outcome *outcome,
                            int throat, int cluster)
 {
@@ -160,7 +169,7 @@ static void find_clusters(const struct network *network, unsigned outlet,
     }
     for (int t = 0; t < network->n_throat; t++) {
         outcome->throat_cluster[t] = -1;
-        if (outcome->throat_event[t] != LIQUID) continue;
+        if (!is_left(network, outcome, t)) continue;
         const int node = liquid_end(network, outcome, t);
         int alone = -1;
         int *number = node < 0 ? &alone : &cluster[set_root(parent, node)];

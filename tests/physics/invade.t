@@ -67,7 +67,7 @@ def check(name, file, rule, trapping, gravity, pores):
        and np.array_equal(file["curve/saturation"], saturation[np.r_[rises[1:] - 1, -1]]),
        f"{name}: the curve is the record pressures and what is left before the next")
 
-    wet, full = node < 0, throat < 0
+    wet, full = node < 0, (part < 0).any(axis=1)  # full: holds liquid, perhaps in one half
     label = labels(len(kind), ends[full & wet[ends].all(axis=1)])
     own = np.where(wet[ends[:, 0]], label[ends[:, 0]], label[ends[:, 1]])
     own = np.where(wet[ends].any(axis=1), own, len(kind) + np.arange(len(ends)))
@@ -80,6 +80,9 @@ def check(name, file, rule, trapping, gravity, pores):
        and np.allclose(np.bincount(cluster[full], (share * (part < 0)).sum(axis=1)[full], count), file["clusters/volume"],
                        atol=1e-12 * volume.sum()),
        f"{name}: with their throats and volumes")
+    held = file["clusters/volume"][:]
+    ok((held > 0).all() and abs(held.sum() / volume.sum() - saturation[-1]) < 1e-12,
+       f"{name}: all of them hold liquid, and together what is left", (held.min(initial=1), held.sum() / volume.sum(), saturation[-1]))
     out = set(label[wet & (kind & 16 > 0)])
     reaches = {b: a not in out for a, b in pairs}
     ok(all(file["clusters/trapped"][b] == trapped for b, trapped in reaches.items()),
