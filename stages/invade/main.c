@@ -109,17 +109,18 @@ static const struct stage stage = {
 
 // Share of the throats, or of the nodes that have a throat, with an entry pressure up
 // to PRESSURE. At the percolation threshold this is the share of bonds, or sites, that
-// must be open.
+// must be open. Those are as easy that tie with it (basics/ranks.h): all of a lattice.
 static double share_up_to(const struct network *network, const struct entry *entry,
                           enum invasion_rule rule, double pressure)
 {
+    const double with_ties = pressure + 0x1p-40 * fabs(pressure);
     int n = 0, all = 0;
     for (int i = 0; i < entry->n; i++) {
         const bool takes_part = rule == INVADE_THROATS
                                     ? network->throat_kind[i] == THROAT_NETWORK
                                     : isfinite(entry->pressure[i]); // has a throat
         all += takes_part;
-        n += takes_part && entry->pressure[i] <= pressure;
+        n += takes_part && entry->pressure[i] <= with_ties;
     }
     return (double)n / all;
 }
