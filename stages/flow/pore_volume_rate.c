@@ -7,7 +7,9 @@
 // with a and b from the first moment of each sector, 2/3 R^3 sin(angle / 2) along its
 // bisector. Rigid motion of a grain along the normal sweeps no fluid of its own
 // sector, which is why only differences appear. At walls the facet stays perpendicular
-// to the wall; upper walls move with the strain rate of the box.
+// to the wall; upper walls move with the strain rate of the box. Where the box repeats,
+// the second pore of a throat may lie IMAGE boxes away, which move as a whole with the
+// strain: seen from there the facet sweeps less by area . (rate image edge).
 #include "pore_volume_rate.h"
 
 #include "basics/memory.h"
@@ -154,9 +156,11 @@ double *opening_rates(const struct grains *grains, const struct cells *cells,
                                            &cells->cell[throat->cell[1]]};
         const struct motion motion = motion_of(grains, cell[0], throat, velocity, rate);
         const double swept = swept_by(&motion);
+        const double carried = dot(
+            throat->area, stretched(grains, (struct vector){0}, throat->image, rate));
         for (int end = 0; end < 2; end++)
             opening[cell[end]->pore] +=
-                (end == 0 ? swept : -swept) +
+                (end == 0 ? swept : carried - swept) +
                 swept_wall(grains, cell[end], throat, end, rate);
     }
     return opening;

@@ -13,7 +13,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch, sets
 
 REFERENCE = "tests/physics/flow_reference/"
 
@@ -189,6 +189,32 @@ with scratch() as folder:
     squeezed = flow(path, **{"pressure.y_upper": 0, "strain_rate": "[-0.01,0,0]"})
     ok(abs(squeezed["walls/inflow"][:].sum() + 0.01) < 1e-13, "squeezed: what is lost flows out",
        squeezed["walls/inflow"][:])
+
+    # In a box that repeats the strain moves whole boxes: where it begins does not matter, eight
+    # boxes are as one, and what the box gains flows in.
+    generator = np.random.default_rng(7)
+    grains = np.column_stack([generator.uniform(0, 1, (25, 3)), generator.uniform(.05, .15, 25)])
+    corners = np.stack(np.meshgrid(*[[0, 1]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    drags = lambda of: of["particles/viscous_force"][:] + of["particles/pressure_force"][:]
+    for repeats, strain in ("[true,true,true]", "[0.01,-0.03,0.02]"), ("[true,true,false]", "[0.01,-0.03,0.04]"):
+        above = {"pressure.y_lower": "null", "pressure.y_upper": "null", "strain_rate": strain,
+                 "pressure.z_upper": 0 if "false" in repeats else "null"}
+        def strained(rows, name, upper):
+            np.savetxt(at(name + ".txt"), rows, fmt="%.17g")
+            run("pack", "-q", *sets("method=import", "bonds=none", "check=none", "lower=[0,0,0]", f"upper={upper}", f"periodic={repeats}"),
+                at(name + ".txt"), "-o", at(name))
+            return flow(at(name), **above)
+        as_is = strained(grains, "strained", [1, 1, 1])
+        moved = strained(np.column_stack([(grains[:, :2] + [.37, .21]) % 1, grains[:, 2:]]), "moved", [1, 1, 1])
+        largest = np.abs(drags(as_is)).max()
+        ok(largest > 0 and np.abs(drags(as_is) - drags(moved)).max() < 1e-8 * largest, f"strained, {repeats}: from another corner the same",
+           np.abs(drags(as_is) - drags(moved)).max() / largest)
+        ok(abs(as_is["walls/inflow"][:].sum() - (0.02 if "false" in repeats else 0)) < 1e-12, "  what the box gains flows in",
+           as_is["walls/inflow"][:])
+        if "false" in repeats:
+            continue
+        eight = strained(np.vstack([grains + [*corner, 0] for corner in corners]), "eight", [2, 2, 2])
+        ok(np.abs(np.tile(drags(as_is), (8, 1)) - drags(eight)).max() < 1e-8 * largest, "  eight boxes are as one")
 
     # Archimedes: grains weigh less by the fluid that they take the place of, and the piezometric
     # pressure knows nothing of it.
