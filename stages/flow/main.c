@@ -357,7 +357,7 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     if (invocation.estimates) return estimate(&invocation, &parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
-    struct computation flow = {.packing = artifact_get_packing(input)};
+    struct computation flow = {.packing = artifact_get_solid_packing(input, "flow")};
 
     struct reason reason;
     const enum status status = compute(input, &parameters, &flow, &reason);

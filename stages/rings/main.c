@@ -182,7 +182,7 @@ int main(int argc, char **argv)
     complete_liquid(&parameters.given, invocation.quiet);
     omp_set_num_threads(invocation.threads);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
-    struct packing packing = artifact_get_packing(input);
+    struct packing packing = artifact_get_solid_packing(input, "rings");
     if (packing.n_particle == 0)
         die(STATUS_BAD_DATA, "%s: must hold grains", input_name(input->path));
     const struct liquid liquid = {.tension =

@@ -23,7 +23,6 @@ struct packing repeated_packing(const struct packing *packing, double reach,
     struct packing wide = {.n_particle = n * *copies,
                            .position = NEW_ARRAY(struct vector, n * *copies),
                            .radius = NEW_ARRAY(double, n **copies),
-                           .kind = NEW_ARRAY(uint8_t, n * *copies),
                            .lower = packing->lower,
                            .upper = {packing->lower.x + times[0] * edge.x,
                                      packing->lower.y + times[1] * edge.y,
@@ -37,7 +36,6 @@ struct packing repeated_packing(const struct packing *packing, double reach,
                                       copy / times[0] / times[1] * edge.z};
         wide.position[k] = add(packing->position[i], offset);
         wide.radius[k] = packing->radius[i];
-        wide.kind[k] = is_auxiliary(packing, i) ? GRAIN_AUXILIARY : GRAIN_SOLID;
     }
     return wide;
 }

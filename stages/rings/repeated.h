@@ -8,7 +8,7 @@
 
 // PACKING side by side *COPIES times, along the axes where its box repeats and is
 // narrower than twice REACH (m, the largest distance of two centres that may matter),
-// until it is not. Places, radii, kinds and the box only: no bonds, no bodies. The
+// until it is not. Places, radii and the box only: no kinds, no bonds, no bodies. The
 // caller frees it with packing_free.
 struct packing repeated_packing(const struct packing *packing, double reach,
                                 int *copies);

@@ -39,8 +39,7 @@ struct ring_sites sites_of(const struct packing *packing, double suction,
         const struct vector apart = nearest_image(packing, i, j);
         const double distance = norm(apart);
         const double open = distance - packing->radius[i] - packing->radius[j];
-        if (open > widest || is_auxiliary(packing, i) || is_auxiliary(packing, j))
-            continue;
+        if (open > widest) continue;
         const int at = sites.count++;
         sites.grain[at][0] = i;
         sites.grain[at][1] = j;

@@ -36,15 +36,9 @@ static const struct stage stage = {
 // Auxiliary grains have no material, and would take part as real ones.
 static struct packing read_packing(const struct artifact *input)
 {
-    struct packing packing = artifact_get_packing(input);
+    struct packing packing = artifact_get_solid_packing(input, "simulate");
     if (packing.n_particle == 0)
         die(STATUS_BAD_DATA, "%s: /particles: has no grains", input_name(input->path));
-    for (int i = 0; i < packing.n_particle; i++)
-        if (is_auxiliary(&packing, i))
-            die(STATUS_BAD_DATA,
-                "%s: /particles/kind: grain %d is auxiliary: simulate takes packings "
-                "without an extra layer (pack.extra_layer)",
-                input_name(input->path), i);
     return packing;
 }
 

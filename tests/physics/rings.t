@@ -168,4 +168,11 @@ for settings, line in [(["suctions=[2e5,1e5]"], "rings.suctions: must be above 0
                              capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings[0]} is refused",
        refused.stderr)
+
+# Grains of an extra layer are not there: stages that take all for solid say so.
+run("pack", "-q", *sets("counts=[3,3,3]", f"radius={R}", "extra_layer=true"), "-o", at("layered"))
+for stage in "rings", "flow":
+    refused = subprocess.run([f"{BIN}/{stage}", "-q", at("layered"), "-o", at("none")], capture_output=True, text=True, check=False)
+    ok(refused.returncode == 65 and f"{stage} takes packings without an extra layer" in refused.stderr
+       and refused.stderr.count("\n") == 1, f"{stage} refuses an extra layer", refused.stderr)
 done()

@@ -127,6 +127,11 @@ extern const char *const provenance_names[]; // ends with NULL
 // schema can say is checked here (65): that bodies are whole, that walls exist, that no
 // throat leads from a node to itself but around the box.
 struct packing artifact_get_packing(const struct artifact *artifact);
+
+// The packing, for a STAGE that takes all of its grains for solid: auxiliary ones, of
+// an extra layer, are refused (65).
+struct packing artifact_get_solid_packing(const struct artifact *artifact,
+                                          const char *stage);
 // Exits 65 on a network in a box that repeats, unless asked for such a one: a stage
 // that does not know of images would take a throat across a side for one across the
 // box.

@@ -423,6 +423,19 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     return packing;
 }
 
+struct packing artifact_get_solid_packing(const struct artifact *artifact,
+                                          const char *stage)
+{
+    struct packing packing = artifact_get_packing(artifact);
+    for (int i = 0; i < packing.n_particle; i++)
+        if (is_auxiliary(&packing, i))
+            die(STATUS_BAD_DATA,
+                "%s: /particles/kind: grain %d is auxiliary: %s takes packings without "
+                "an extra layer (pack.extra_layer)",
+                input_name(artifact->path), i, stage);
+    return packing;
+}
+
 // Each by itself: what is left out stays NULL, and the throat conducts as a cylinder.
 static void get_throat_shapes(const struct artifact *artifact, struct network *network)
 {
