@@ -27,7 +27,6 @@
 #include "small_grains.h"
 #include "write_flow.h"
 
-#include <assert.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -145,6 +144,31 @@ struct computation {
     struct pore_stress stress;
 };
 
+// GIVEN (n_particle), m/s, in units of length. The place that a packing gives may lie
+// boxes away from that in the box, and moves with the strain of them. Along axes that
+// repeat only differences count: those from the first grain, so that grains that move
+// all alike open nothing, to the last digit.
+static struct vector *velocities_in_box(const struct packing *packing,
+                                        const struct grains *grains,
+                                        const struct vector *given, struct vector rate)
+{
+    struct vector *velocity = NEW_ARRAY(struct vector, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            double speed = component(given[i], axis);
+            if (grains->repeats[axis]) {
+                const double edge = component(grains->box, axis) * grains->unit;
+                const double away = component(packing->position[i], axis) -
+                                    component(packing->lower, axis) -
+                                    component(grains->position[i], axis) * grains->unit;
+                speed -= component(given[0], axis) +
+                         component(rate, axis) * edge * rint(away / edge);
+            }
+            set_component(&velocity[i], axis, speed / grains->unit);
+        }
+    return velocity;
+}
+
 // NULL when neither box nor grains move. Velocities of the packing, where it has them;
 // else grains move with the strain of the box, v = rate x. Scaled by the unit of
 // length; (n_pore) volume a time.
@@ -153,20 +177,22 @@ static double *find_opening(const struct artifact *input,
                             const struct computation *flow)
 {
     const struct vector rate = as_vector(parameters->strain_rate);
-    const int n = flow->packing.n_particle;
-    const bool given = artifact_has_dataset(input, "/particles/velocity");
-    if (!given && !(norm(rate) > 0)) return NULL;
-    struct vector *velocity = given ? artifact_get(input, "/particles/velocity", NULL)
-                                    : NEW_ARRAY(struct vector, n);
-    assert(n == 0 || flow->grains.position);
-    for (int i = 0; i < n; i++) {
-        const struct vector at = flow->grains.position[i];
-        velocity[i] =
-            given ? scale(1 / flow->grains.unit, velocity[i])
-                  : (struct vector){rate.x * at.x, rate.y * at.y, rate.z * at.z};
+    const struct grains *grains = &flow->grains;
+    struct vector *velocity;
+    if (artifact_has_dataset(input, "/particles/velocity")) {
+        struct vector *given = artifact_get(input, "/particles/velocity", NULL);
+        velocity = velocities_in_box(&flow->packing, grains, given, rate);
+        free(given);
+    } else {
+        if (!(norm(rate) > 0)) return NULL;
+        velocity = NEW_ARRAY(struct vector, grains->n_base);
+        for (int i = 0; i < grains->n_base; i++) {
+            const struct vector at = grains->position[i];
+            velocity[i] = (struct vector){rate.x * at.x, rate.y * at.y, rate.z * at.z};
+        }
     }
     double *opening =
-        opening_rates(&flow->grains, &flow->cells, &flow->throats, velocity, rate);
+        opening_rates(grains, &flow->cells, &flow->throats, velocity, rate);
     free(velocity);
     return opening;
 }

@@ -213,6 +213,18 @@ with scratch() as folder:
            as_is["walls/inflow"][:])
         if "false" in repeats:
             continue
+        boxes = generator.integers(-1, 2, (25, 3))
+        strained(grains, "far", [1, 1, 1])
+        with h5py.File(at("far"), "r+") as far:  # places boxes away, and velocities there
+            far["particles/position"][:] = grains[:, :3] + boxes
+            far["particles"].create_dataset("velocity", data=(grains[:, :3] + boxes) * [0.01, -0.03, 0.02] + 5)
+            far["particles/velocity"].attrs["units"] = "m s-1"
+        ok(np.abs(drags(as_is) - drags(flow(at("far"), **above))).max() < 1e-8 * largest,
+           "  velocities are those at the places given, and a common one is none")
+        with h5py.File(at("far"), "r+") as far:
+            far["particles/velocity"][:] = [1, 2, 3]
+        at_rest = flow(at("far"), **{**above, "strain_rate": "[0,0,0]"})
+        ok((drags(at_rest) == 0).all() and (at_rest["throats/flux"][:] == 0).all(), "  grains that move all alike drive no fluid")
         eight = strained(np.vstack([grains + [*corner, 0] for corner in corners]), "eight", [2, 2, 2])
         ok(np.abs(np.tile(drags(as_is), (8, 1)) - drags(eight)).max() < 1e-8 * largest, "  eight boxes are as one")
 
