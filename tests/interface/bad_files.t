@@ -79,6 +79,8 @@ for reader, given, first in [
     refused(f"{reader} refuses a {given}", BAD_DATA, [reader, given],
             f"{given}: must be a {wanted[reader]}, is a {given}"
             + f": first run {first}" * bool(first))
+refused("a dump is not an HDF5 file", BAD_DATA, ["tessellate", text_file("dump", "ITEM: TIMESTEP\n0\n")],
+        "dump: is not an HDF5 file; grains as text go to pack first")
 refused("a JSON artifact is not an HDF5 file", BAD_DATA, ["crackstats", "crackstats"],
         "crackstats: is not an HDF5 file; parameters, in JSON, go by -p")
 damage("an unknown schema is named", "packing",

@@ -31,6 +31,7 @@ imported("NaN in a text is refused", "0 nan 0 1\n", "line 1: must be finite, got
 imported("a number too large is refused", "1e999 0 0 1\n", "line 1: must be finite, got inf")
 imported("null bytes in a text are refused", b"0 0 0 1\n\0\0\0",
          "holds null bytes: neither text nor HDF5")
+imported("a compressed text is refused", b"\x1f\x8b\x08\0\0", "is compressed: unpack it by gunzip")
 imported("a text of comments holds no grains", "# x y z r\n\n", "no grains")
 imported("an empty text holds no grains", "", "no grains")
 refused("an import without an input says where grains come from", BAD_DATA,

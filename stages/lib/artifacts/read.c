@@ -30,11 +30,11 @@ const char *const provenance_names[] = {"program", "parameters", "inputs", "mode
                                         NULL};
 
 // Parameters given without -p are what JSON here mostly is, and grains what begins with
-// a number or a comment, so the message says how they go.
+// a number, a comment or ITEM:, so the message says how they go.
 static const char *hint_for(char first)
 {
     if (first == '{') return "; parameters, in JSON, go by -p";
-    return first && strchr("0123456789-.# ", first)
+    return first && strchr("0123456789-.# I", first)
                ? "; grains as text go to pack first"
                : "";
 }

@@ -54,6 +54,8 @@ static enum status check_grain(const double grain[4], int count, int number, boo
 
 enum status copy_text(const struct bytes *text, char **copy, struct reason *reason)
 {
+    if (text->size >= 2 && !memcmp(text->data, "\x1f\x8b", 2))
+        return refuse(reason, STATUS_BAD_DATA, "is compressed: unpack it by gunzip");
     if (memchr(text->data, 0, text->size))
         return refuse(reason, STATUS_BAD_DATA,
                       "holds null bytes: neither text nor HDF5");
