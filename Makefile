@@ -181,11 +181,13 @@ $(SAMPLES): $(samples_sources) $(wildcard stages/lib/statistics/*.h) $(BUILD)/fl
 	$(call quiet,LINK,$(@F))mkdir -p $(@D) && $(CC) $(CPPFLAGS) $(filter-out -MMD -MP,$(CFLAGS)) -fPIC -shared \
 		$(filter %.c,$^) -lgsl -lgslcblas -lm -o $@
 
+# A hundred programs with libraries inside: gold, where it is, links them in half the time.
+fast_linker := $(if $(shell command -v ld.gold),-fuse-ld=gold)
 define test_rules
 $(call test_programs,$1): $(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call support_for,$1) \
 		$(CORES) $(LIBRARY) $(BUILD)/sources
 	$$(call quiet,LINK,tests/$1/$$*)mkdir -p $$(@D) \
-	&& $(CC) $$(LDFLAGS) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
+	&& $(CC) $$(LDFLAGS) $(fast_linker) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
 endef
 $(foreach d,unit physics bench bench/void,$(eval $(call test_rules,$d)))
 
