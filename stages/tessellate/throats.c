@@ -5,8 +5,8 @@
 //     [K 3.7, 3.8].
 // A facet is seen from both cells, from copies where the box is periodic, and in walls
 // from several images of a grain. Each throat must be counted once: from the cell of
-// its lower node, from the copy whose first corner is a grain itself, and throats in a
-// wall with the same nodes are fused. Two passes, count and fill, so that each thread
+// its lower node, from the copy whose first corner is a grain itself, and throats with
+// the same nodes are fused. Two passes, count and fill, so that each thread
 // writes to places of its own and the result does not depend on the number of threads.
 #include "assemble.h"
 
@@ -173,18 +173,17 @@ static void sort_candidates(struct candidate *at, int count)
     }
 }
 
-// A throat in a wall is seen from the facets of several images: it becomes one throat
-// with the smallest radius, which comes first. Returns how many of COUNT remain.
-static int fuse_in_walls(const uint8_t *walls, int node, struct candidate *at,
-                         int count)
+// Throats between the same two nodes are one, as edges are straight: one in a wall is
+// seen from the facets of several images, one from wall to wall past a square of grains
+// from each triangle of the square. It has the smallest radius, which comes first.
+// Returns how many of COUNT remain.
+static int fuse_same(struct candidate *at, int count)
 {
     int kept = 0;
-    for (int k = 0; k < count; k++) {
-        const bool same = kept && at[kept - 1].second == at[k].second &&
-                          at[kept - 1].image == at[k].image &&
-                          (walls[node] & walls[at[k].second]);
-        if (!same) at[kept++] = at[k];
-    }
+    for (int k = 0; k < count; k++)
+        if (!kept || at[kept - 1].second != at[k].second ||
+            at[kept - 1].image != at[k].image)
+            at[kept++] = at[k];
     return kept;
 }
 
@@ -225,7 +224,7 @@ static void fuse_candidates(const struct assembly *assembly,
         struct candidate *at = candidates->at + offset[i];
         if (!many) continue;
         sort_candidates(at, many);
-        count[i + 1] = fuse_in_walls(assembly->nodes->walls, i, at, many);
+        count[i + 1] = fuse_same(at, many);
     }
 }
 

@@ -85,6 +85,24 @@ for name, periodic in (("mirrors", "periodic=[false,false,true]"), ("lattice", P
         both[name] = file["summary"].attrs["permeability"]
 ok(abs(both["mirrors"] / both["lattice"] - 1) < 1e-9, "between planes of symmetry a lattice conducts as it does without end", both)
 
+# One layer of a square lattice between two walls: a throat from wall to wall is seen from both triangles of a square
+# of grains, and is one. Its slices are open over 1 - pi (a^2 - u^2), lengths in edges of a square, and gas diffuses as 1 over
+# the integral of 1 / open.
+r, a = 0.5e-6, 0.45
+layer = [[(2 * i + 1) * r, (2 * j + 1) * r, r, 2 * a * r] for i in range(3) for j in range(3)]
+for name, periodic in ("endless", "periodic=[true,true,false]"), ("boxed", "periodic=[false,false,false]"):
+    with sections(imported(name, layer, [6 * r, 6 * r, 2 * r], periodic)) as file:
+        k = file["summary"].attrs["permeability"]
+    run("tessellate", "-q", "-s", "throat_volume=void", at(name), "-o", at("network.h5"))
+    run("invade", "-q", "-s", "transport=true", "-s", "trapping=false", at("network.h5"), "-o", at("invasion.h5"))
+    with h5py.File(at("invasion.h5")) as file:
+        summary = dict(file["summary"].attrs)
+        volume = file["throats/volume"][:]
+    p = 1 - np.pi * a**2
+    closed = 1 / (2 / np.sqrt(p * np.pi) * np.arctan(a * np.sqrt(np.pi / p)) + 1 - 2 * a)
+    ok(abs(summary["permeability"] / k - 1) < 1e-9 and abs(summary["diffusivity"] / closed - 1) < 1e-9 and volume.min() > 0,
+       f"one square layer, {name}: each throat from wall to wall once", (summary["permeability"] / k, summary["diffusivity"] / closed))
+
 # Shrunk in place, where hydraulic radii are 1.1 to 2.5 times off (docs/flow.md).
 for factor, within in ((1, 0.1), (0.95, 0.15), (0.8, 0.2), (0.7, 0.2)):
     packing = grown(jammed, factor, "shrunk.h5")
