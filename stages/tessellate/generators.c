@@ -108,9 +108,9 @@ static enum status check_inside(const struct generators *generators,
             return refuse(
                 reason, STATUS_BAD_DATA,
                 "/particles/position: row %d: the centre must be inside the box "
-                "along %c, from 0 to %g, got %g, in units of %g m",
-                i, "xyz"[axis], component(generators->box, axis), at,
-                generators -> unit);
+                "along %c, between 0 and %g m from its lower side, is %g m from there",
+                i, "xyz"[axis], component(generators->box, axis) * generators -> unit,
+                at * generators -> unit);
         }
     return STATUS_OK;
 }

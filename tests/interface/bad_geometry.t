@@ -15,8 +15,8 @@ damage("a packing without grains is refused", "packing",
        "/particles/position: no grains")
 damage("a grain outside the box is refused", "packing",
        value("particles/position", (4, 2), 7e-6),
-       "/particles/position: row 4: the centre must be inside the box along z, from 0 to 3, "
-       r"got 14, in units of 5e-07 m")
+       "/particles/position: row 4: the centre must be inside the box along z, between 0 "
+       "and 1.5e-06 m from its lower side, is 7e-06 m from there")
 damage("two grains in one place are refused", "packing",
        lambda file: value("particles/position", 4, file["particles/position"][3])(file),
        "/particles/position: row 4: has the same centre as row 3")

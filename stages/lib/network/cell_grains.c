@@ -54,8 +54,9 @@ static enum status check_inside(const struct grains *grains, struct reason *reas
             if (grains->repeats[axis] || (x > 0 && x < edge)) continue;
             return refuse(reason, STATUS_BAD_DATA,
                           "/particles/position: row %d: the centre must be inside the "
-                          "box along %c, from 0 to %g, got %g, in units of %g m",
-                          i, "xyz"[axis], edge, x, grains -> unit);
+                          "box along %c, between 0 and %g m from its lower side, is "
+                          "%g m from there",
+                          i, "xyz"[axis], edge * grains -> unit, x * grains -> unit);
         }
     return STATUS_OK;
 }
