@@ -96,12 +96,17 @@ static struct packing wide_packing(const struct packing *packing, double suction
     return repeated_packing(packing, 2 * largest + gap, copies);
 }
 
-static double volume_of_grains(const struct packing *packing)
+// All grains, and what of them is WITHIN the box (parts may stick out), m3.
+static double volume_of_grains(const struct packing *packing, double *within)
 {
     struct contacts contacts;
     int32_t(*pair)[2] = neighbour_pairs(packing, 0, &contacts.count);
     contacts.pair = (const int32_t(*)[2])pair;
     const double volume = solid_volume(packing, &contacts);
+    const struct window box = {packing->lower, packing->upper};
+    double porosity;
+    slice_porosity(packing, &contacts, &box, 1, &porosity);
+    *within = (1 - porosity) * packing_domain_volume(packing);
     free(pair);
     return volume;
 }
@@ -120,10 +125,10 @@ static json_t *tensor(const double of[3][3], double factor)
     return rows;
 }
 
-// BOX and SOLID: volumes of the domain and of the grains in it, m3. What IS retained is
-// of so many COPIES of them.
-static void append_row(json_t *report, double box, double solid, double suction,
-                       const struct retained *is, int copies)
+// BOX, SOLID and EMPTY: volumes of the domain, of the grains, and of the void, m3. What
+// IS retained is of so many COPIES of them.
+static void append_row(json_t *report, double box, double solid, double empty,
+                       double suction, const struct retained *is, int copies)
 {
     const double trace = is->pull[0][0] + is->pull[1][1] + is->pull[2][2];
     const double volume = is->volume / copies;
@@ -132,7 +137,7 @@ static void append_row(json_t *report, double box, double solid, double suction,
     append(report, "meeting", json_integer(lround(1.0 * is->meeting / copies)));
     append(report, "volume", json_real(volume));
     append(report, "content", json_real(volume / solid));
-    append(report, "saturation", json_real(volume / (box - solid)));
+    append(report, "saturation", json_real(volume / empty));
     append(report, "stress", json_real(trace / 3 / box / copies));
     append(report, "stress_tensor", tensor(is->pull, 1 / (box * copies)));
 }
@@ -145,8 +150,10 @@ static json_t *report_of(const struct packing *packing, const struct liquid *liq
     double *suction = suctions_of(given, unit, &count);
     struct packing wide =
         wide_packing(packing, suction[0], liquid->tension, name, &copies);
+    double within;
     const double box = packing_domain_volume(packing),
-                 solid = volume_of_grains(&wide) / copies;
+                 solid = volume_of_grains(&wide, &within) / copies,
+                 empty = box - within / copies;
     struct ring_sites sites = sites_of(&wide, suction[0], liquid->tension);
     json_t *report = json_pack(
         "{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}", "schema",
@@ -160,7 +167,7 @@ static json_t *report_of(const struct packing *packing, const struct liquid *liq
         const enum status status =
             retain(&wide, &sites, liquid, suction[k], &retained, &reason);
         if (status) die(status, "%s", reason.text);
-        append_row(report, box, solid, suction[k], &retained, copies);
+        append_row(report, box, solid, empty, suction[k], &retained, copies);
     }
     sites_free(&sites);
     packing_free(&wide);

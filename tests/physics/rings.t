@@ -130,6 +130,12 @@ ok(all(np.array_equal(8 * np.array(few[key]), many[key]) for key in ("contacts",
     np.allclose(few[key], many[key], rtol=1e-9, atol=0) for key in ("saturation", "stress")),
    "a few grains of many sizes are eight times as many in eight boxes", (few, many))
 
+# What sticks out of the box takes none of its void.
+half = packing("half", [[2 * R, 2 * R, 0.2 * R, R], [2 * R, 2 * R, 2.2 * R, R]], [4 * R] * 3)
+out = rings(half, suctions)
+void = 64 * R**3 - (2 * 4 / 3 * pi - pi * 0.8**2 * (3 - 0.8) / 3) * R**3
+ok(np.allclose(np.array(out["saturation"]) * void, out["volume"], rtol=1e-9), "void is that of the box where grains stick out", out)
+
 # In a cylinder the void is that of the cylinder.
 run("pack", "-q", *sets("method=random_sequential", "count=40", f"radius={R}", "domain.shape=cylinder", f"domain.radius={6 * R}",
                         f"domain.height={12 * R}", "bonds=none", "check=none"), "-o", at("cylinder"))
