@@ -137,7 +137,7 @@ with scratch() as folder:
             "the saturation pressure of water is known, is 500; or give saturation_pressure in Pa",
             "temperature=500")
     refused("NMP whose density is not known", "liquid_density: must be given in kg/m3: that of nmp is not known "
-            "here", "fluid=nmp", "temperature=353.15")
+            "here (docs/fluids.md)", "fluid=nmp", "temperature=353.15")
     refused("another liquid has to be described", "saturation_pressure: must be given in Pa: with fluid=other",
             "fluid=other")
     refused("humidity is that of water", "relative_humidity: is that of water vapour, but the liquid is ethanol",

@@ -85,9 +85,10 @@ static enum status refuse_unknown(const struct conditions *conditions, int prope
             "%s: must be given in %s: with fluid=other nothing is known of it", key,
             properties[property].unit);
     if (range.from > range.to)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "%s: must be given in %s: that of %s is not known here", key,
-                      properties[property].unit, fluid_name(fluid));
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "%s: must be given in %s: that of %s is not known here (docs/fluids.md)",
+            key, properties[property].unit, fluid_name(fluid));
     return refuse(reason, STATUS_BAD_DATA,
                   "temperature: must be from %g to %g K, where the %s of %s is known, "
                   "is %g; or give %s in %s",
