@@ -230,8 +230,8 @@ def table_points(path, is_seed):
 
 # ---- seeds ------------------------------------------------------------------------------
 
-def drawn_key(scene_of, sets, path):
-    """The seed of what the scene draws."""
+def drawn_key(scene_of, sets, grains, path):
+    """The seed of what the scene draws; GRAINS: the file that they come from, if there is one."""
     for key, used in stages.DRAWN.items():
         stage = key.split(".")[0]
         section = json.loads(json.dumps(stages.sections(scene_of(stage)).get(stage, {})))
@@ -242,7 +242,7 @@ def drawn_key(scene_of, sets, path):
                 for part in parts:
                     place = place.setdefault(part, {})
                 place[last] = value
-        if used(section):
+        if used(section, grains):
             return [key]
     return refuse(65, f"{path}: seeds: the scene draws nothing (neither radii of throats nor grains nor strengths); "
                   "seeds.keys says what takes them, packings gives other grains")
@@ -338,7 +338,7 @@ def table_runs(said, path, replaced, scene):
         of_row = row.get("scene", scene)
         if not of_row:
             refuse(65, f"{table}: row {number}: no scene: a column scene, or SCENE=")
-        here = keys or (drawn_key(lambda stage: of_row, sets, path) if seeds != [None] else [])
+        here = keys or (drawn_key(lambda stage: of_row, sets, row.get("import"), path) if seeds != [None] else [])
         for seed in seeds:
             own = next((v for k, v in sets.items() if k.endswith(".seed")), None) if seed is None else seed
             runs.append(Run(len(runs) + 1, point, values, own, row.get("import"), {**said.get("set", {}), **sets, **{k: seed for k in here}},
@@ -360,7 +360,8 @@ def axes_runs(said, path, replaced, scene, most):
         sets = {**said.get("set", {}), **sets}
         of_point = sets.pop("scene", scene) or refuse(65, f"{path}: has no scene")
         scene_of = lambda stage: of_point.get(stage, of_point.get("conditions")) if isinstance(of_point, dict) else of_point
-        keys = keys or (drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, path) if seeds != [None] else [])
+        if not keys and seeds != [None]:
+            keys = drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, sets.get("import", packings[0]), path)
         for grains, seed in itertools.product(packings, seeds):
             mine = {**sets, **({key: seed for key in keys} if seed is not None else {})}
             runs.append(Run(len(runs) + 1, number, values, seed, mine.pop("import", grains), mine, of_point))

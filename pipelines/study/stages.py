@@ -22,11 +22,19 @@ WITHOUT_LIQUID = {"response": ["packing"], "crackstats": ["response"]}
 STAGES = {stage: kind for kind, (stage, _, _) in MADE.items()}
 # Stages that take what they lack from the section conditions.
 SHARING = ("dry", "invade", "force-protocol", "dem-replay", "bridge", "rings")
-# What draws random numbers: the seed, and whether it is used by a section.
-DRAWN = {"dry.throat_radius.seed": lambda s: s.get("throat_radius", {}).get("distribution", "network") != "network",
-         "pack.seed": lambda s: s.get("method", "cubic") not in (
-             "square", "cubic", "bcc", "fcc", "hexagonal", "honeycomb", "import"),
-         "dem-replay.bond.strength.seed": lambda s: s.get("bond", {}).get("strength", {}).get("distribution", "one") != "one"}
+
+
+def packs_at_random(section, grains):
+    """Whether pack.seed changes the packing; GRAINS: the file that they come from, if there is one."""
+    method = section.get("method", "cubic")
+    return method == "explosive_repulsion" or not grains and method not in (
+        "square", "cubic", "bcc", "fcc", "hexagonal", "honeycomb", "import")
+
+
+# What draws random numbers: the seed, and whether it is used by a section where grains come from a file.
+DRAWN = {"dry.throat_radius.seed": lambda s, _: s.get("throat_radius", {}).get("distribution", "network") != "network",
+         "pack.seed": packs_at_random,
+         "dem-replay.bond.strength.seed": lambda s, _: s.get("bond", {}).get("strength", {}).get("distribution", "one") != "one"}
 
 
 def made_from(kind, liquid):

@@ -270,6 +270,11 @@ lattice = {**scene, "dry": {**scene["dry"], "throat_radius": {"distribution": "n
 write("still.json", lattice)
 refused("seeds of a scene that draws nothing", 65, "the scene draws nothing", "wrong.json", {"scene": "still.json", "seeds": 2})
 refused("and of 2.0 seeds", 65, "the scene draws nothing", "wrong.json", {"scene": "still.json", "seeds": 2.0})
+fallen = {**lattice, "pack": {"method": "deposition", "import": {"scale": 1e-6}}}
+write("fallen.json", fallen)
+write("grains.txt", "0 0 1 1\n")
+refused("seeds of grains that come from a file", 65, "the scene draws nothing", "wrong.json",
+        {"scene": "fallen.json", "import": "grains.txt", "seeds": 2})
 refused("what is not JSON", 65, "is not JSON", "wrong.json", "{")
 ok(study("make", "nowhere.json", status=66)[0], "refused: a file that is not there")
 
