@@ -369,6 +369,13 @@ is 'one more: nothing else again' '4 crackstats 2 dem-replay 2 dry 2 force-proto
 make run SCENE=samples/stiff-5x5x10.json >said 2>&1
 is 'nor the network, for a run of the scene' '1 crackstats 1 dem-replay 1 dry 1 force-protocol' "$(sort ran | uniq -c | names)"
 
+# --- layers that crack ----------------------------------------------------------------------
+
+is 'a layer of no scene' 'nowhere.json: no such file' "$(make -n craquelure SCENE=nowhere.json 2>&1 | grep -o 'nowhere.*file')"
+touch grains.txt
+is 'several seeds of grains that do not change' 'CRAQUELURE_SEEDS: one only' \
+    "$(make -n craquelure SCENE=samples/stiff-5x5x10.json IMPORT=grains.txt CRAQUELURE_SEEDS='1 2' 2>&1 | grep -o 'CRAQ[^,]*')"
+
 # --- what a run comes down to, in a line ---------------------------------------------------
 
 told() { jq -rf pipelines/run/headline.jq --arg draws 'draws of the throat radii' <<<"$1"; }

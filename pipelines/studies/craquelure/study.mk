@@ -15,7 +15,9 @@ craquelure := $(RUNS)/$(or $(strip $(NAME)),$(basename $(notdir $(craquelure_sce
 craquelure: ## a layer that cracks into polygons as it shrinks (a minute of one core)
 
 ifneq ($(call asked,craquelure,$(craquelure)),)
+$(if $(wildcard $(craquelure_scene)),,$(error $(craquelure_scene): no such file))
 craquelure_seeds := $(or $(call once_each,$(CRAQUELURE_SEEDS)),$(shell jq -r '.pack.seed // 1 | floor' $(craquelure_scene)))
+$(if $(and $(IMPORT),$(word 2,$(craquelure_seeds))),$(error CRAQUELURE_SEEDS: one only, since grains of a file are the same for each))
 # What SET sets of stage $1.
 craquelure_set = $(patsubst $1.%,%,$(filter $1.%,$(SET)))
 $(if $(filter-out pack.% dem-replay.% crackstats.%,$(SET)),$(error SET: must be pack.KEY, dem-replay.KEY or crackstats.KEY))
