@@ -156,6 +156,14 @@ static void strain_box(const struct simulate_parameters *parameters, struct dem 
     dem_rescale(dem, stretch, 1);
 }
 
+struct vector strain_velocity(const struct simulate_parameters *parameters,
+                              struct vector lower, struct vector place)
+{
+    const double *rate = parameters->strain_rate;
+    const struct vector from = subtract(place, lower);
+    return (struct vector){rate[0] * from.x, rate[1] * from.y, rate[2] * from.z};
+}
+
 // A driven group turns about its axis at a signed rate. So a factor below 0 turns it
 // back without a new axis.
 void control(const struct simulate_parameters *parameters, const struct scene *scene,

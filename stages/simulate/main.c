@@ -83,6 +83,9 @@ static void read_scene(const struct simulate_parameters *parameters,
     struct vector *velocity = artifact_has_dataset(input, "/particles/velocity")
                                   ? artifact_get(input, "/particles/velocity", NULL)
                                   : NULL;
+    for (int i = 0; velocity && i < packing->n_particle; i++)
+        velocity[i] = subtract(velocity[i], strain_velocity(parameters, packing->lower,
+                                                            packing->position[i]));
     struct reason reason;
     const enum status status =
         scene_init(parameters, packing, velocity, scene, &reason);
@@ -195,7 +198,7 @@ static void write(const struct simulate_parameters *parameters,
     if (all)
         put_motion(artifact, scene, outcome);
     else
-        put_final_packing(artifact, scene, outcome);
+        put_final_packing(artifact, parameters, scene, outcome);
     artifact_finish(artifact, invocation, json_incref(inputs), model);
 }
 

@@ -8,6 +8,8 @@
 // the grains.
 #include "write_motion.h"
 
+#include "control.h"
+
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
 
@@ -199,8 +201,9 @@ static void put_packing_summary(struct artifact *artifact,
                         isfinite(ratio) ? ratio : 0);
 }
 
-void put_final_packing(struct artifact *artifact, const struct scene *scene,
-                       const struct outcome *outcome)
+void put_final_packing(struct artifact *artifact,
+                       const struct simulate_parameters *parameters,
+                       const struct scene *scene, const struct outcome *outcome)
 {
     const struct packing *before = scene->setup.packing;
     const int n = before->n_particle;
@@ -212,6 +215,9 @@ void put_final_packing(struct artifact *artifact, const struct scene *scene,
     dem_positions(outcome->dem, packing.position);
     dem_box(outcome->dem, &packing.lower, &packing.upper);
     dem_velocities(outcome->dem, velocity);
+    for (int i = 0; i < n; i++)
+        velocity[i] = add(velocity[i], strain_velocity(parameters, packing.lower,
+                                                       packing.position[i]));
     keep_intact_bonds(outcome->dem, &packing);
     artifact_put_packing(artifact, &packing);
     put_packing_summary(artifact, &packing, outcome->dem);

@@ -18,7 +18,8 @@ void put_motion(struct artifact *artifact, const struct scene *scene,
 // whatever reads a packing takes its bonds as intact. Spins are lost, a packing has
 // none. Positions are those of the engine; in a box that repeats they may lie outside
 // of it.
-void put_final_packing(struct artifact *artifact, const struct scene *scene,
-                       const struct outcome *outcome);
+void put_final_packing(struct artifact *artifact,
+                       const struct simulate_parameters *parameters,
+                       const struct scene *scene, const struct outcome *outcome);
 
 #endif

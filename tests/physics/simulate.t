@@ -4,6 +4,7 @@
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 
@@ -157,6 +158,21 @@ near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate t
 near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
      "and stresses the lattice by its stiffness")
 ok("work" not in motion["history"], "record.energy=false keeps no balance")
+
+
+# Grains that touch nothing move with the box: the velocity that is written says so, and a strain that goes on takes it back.
+loose = np.array([[1e-3, 2e-3, 3e-3, 2e-4], [5e-3, 5e-3, 6e-3, 2e-4]])
+box = {"gravity": [0, 0, 0], "duration": 0.01}
+strained = {**box, "box": {"strain_rate": [0, 0, -0.1]}, "write": "packing"}
+end = simulate(packing(loose, (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, True)), strained)
+place, velocity = end["particles/position"][:], end["particles/velocity"][:]
+ok(np.allclose(velocity, [0, 0, -0.1] * place, rtol=1e-12, atol=0), "loose grains move with a strained box", velocity)
+shutil.copy(at("motion"), at("strained"))
+ok(np.allclose(simulate(at("strained"), strained)["particles/velocity"][:, 2], math.exp(-1e-3) * velocity[:, 2], rtol=1e-5),
+   "also where the strain goes on")
+moved = simulate(at("strained"), {**box, "write": "packing"})["particles/position"][:, 2] - place[:, 2]
+span = moved / velocity[:, 2]
+ok(abs(span[1] / span[0] - 1) < 1e-9 and abs(span[0] - 0.01) < 2e-4, "and go on by themselves where it does not", span)
 
 # --- bonds -------------------------------------------------------------------------------------------
 # A ball breaks a bond at 0.02 s, then small grains close in on another ball and shorten the time step.
