@@ -208,6 +208,17 @@ status, _, said = call("dem-replay", *few,
 ok(status == 0 and f"of {n} grains to those that are held" in said,
    "that hardly a grain hangs on those held is said", said)
 
+# ---- narrow boxes that repeat -----------------------------------------------------------------
+
+# Two grains may touch across both sides of a box narrower than two diameters.
+for width, narrow in (3e-6, True), (4e-6, False):
+    row = text("row", np.array([[0.2e-6, 1e-6, 1e-6], [1.3e-6, 1e-6, 1e-6]]), np.array([0.5e-6, 0.5e-6]))
+    run("pack", "-q", *sets("method=import", "check=none", "bonds=none", "periodic=[true,false,false]", "lower=[0,0,0]",
+                            f"upper=[{0.5 * width},2e-6,2e-6]"), row, "-o", at("row.h5"))
+    report = check(at("row.h5"))[1]
+    ok(("narrow" in [f["name"] for f in report["findings"]]) == narrow,
+       f"a box {0.5 * width:g} m wide {'may hide' if narrow else 'shows'} contacts across both sides", report["findings"])
+
 # ---- weight -------------------------------------------------------------------------------
 
 # Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.

@@ -201,6 +201,24 @@ static void judge_plane(const struct packing_facts *facts, struct findings *find
                 "xyz"[facts->plane], "xyz"[facts->plane]);
 }
 
+// Two grains may touch across both sides of such a box; contacts and bonds are those of
+// the nearest image.
+static void judge_width(const struct packing *packing,
+                        const struct packing_facts *facts, struct findings *findings)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    const double least = 4 * facts->largest * (1 - 1e-9);
+    int axis = 0;
+    while (axis < 3 && !(packing->periodic[axis] && component(edge, axis) < least))
+        axis++;
+    if (axis == 3) return;
+    add_finding(findings, FINDING_NOTE, "narrow",
+                "the box repeats along %c and is %.3g m wide there, less than two "
+                "largest diameters: of grains that touch across both sides one contact "
+                "and one bond count; take a wider body, or two side by side",
+                "xyz"[axis], component(edge, axis));
+}
+
 void judge_packing(const struct packing *packing, const struct packing_facts *facts,
                    struct findings *findings)
 {
@@ -208,6 +226,7 @@ void judge_packing(const struct packing *packing, const struct packing_facts *fa
     judge_units(facts, findings);
     judge_places(facts, findings);
     judge_room(packing, facts, findings);
+    judge_width(packing, facts, findings);
     judge_overlaps(facts, findings);
     judge_plane(facts, findings);
 }
