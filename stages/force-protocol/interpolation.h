@@ -28,8 +28,7 @@ void interpolation_free(struct interpolation *interpolation);
 // forces FORMER and FORCE (n_particle) at these: at all steps of the drying, on both
 // sides where forces jump. ROW from 1 on, one after the other. Costs the forces of the
 // steps between both times.
-void interpolation_follow(struct interpolation *interpolation,
-                          const struct vector *former, const struct vector *force,
-                          int row);
+void interpolation_follow(struct interpolation *of, const struct vector *former,
+                          const struct vector *force, int row);
 
 #endif

@@ -30,10 +30,9 @@ struct packing repeated_packing(const struct packing *packing, double reach,
     for (int axis = 0; axis < 3; axis++)
         wide.periodic[axis] = packing->periodic[axis];
     for (int k = 0; k < wide.n_particle; k++) {
-        const int i = k % n, copy = k / n;
-        const struct vector offset = {copy % times[0] * edge.x,
-                                      copy / times[0] % times[1] * edge.y,
-                                      copy / times[0] / times[1] * edge.z};
+        const int i = k % n, copy = k / n, x = copy % times[0],
+                  y = copy / times[0] % times[1], z = copy / times[0] / times[1];
+        const struct vector offset = {x * edge.x, y * edge.y, z * edge.z};
         wide.position[k] = add(packing->position[i], offset);
         wide.radius[k] = packing->radius[i];
     }

@@ -131,7 +131,7 @@ static void add_element(struct corner_grid *grid, int i, int j)
 // The integral, f A^-1 f.
 static double flow_by_factor(const struct corner_grid *grid)
 {
-    const size_t width = (size_t)grid->n + 2, n = (size_t)((2 * grid->n - 1) * grid->n);
+    const size_t side = (size_t)grid->n, width = side + 2, n = (2 * side - 1) * side;
     gsl_matrix_view band = gsl_matrix_view_array(grid->band, n, width);
     gsl_vector_view load = gsl_vector_view_array(grid->load, n);
     gsl_vector *w = gsl_vector_alloc(n);

@@ -21,17 +21,18 @@
 #include <string.h>
 
 enum {
+    IS_DOUBLE = sizeof(NUMBER) == 8,
     LANES = sizeof(VECTOR) / sizeof(NUMBER),
     WIDTH = VECTORS * LANES,
     BLOCK =
         BLOCK_BYTES / sizeof(NUMBER), // columns; of all that wait they stay in cache
-    MOST = sizeof(NUMBER) == sizeof(double) ? MAX_PENDING_DOUBLES : MAX_PENDING
+    MOST = IS_DOUBLE ? MAX_PENDING_DOUBLES : MAX_PENDING
 };
 
 // From column 0 to COLUMN of a row: floats lie in strips.
 static inline size_t in_row(int column)
 {
-    if (sizeof(NUMBER) == sizeof(double)) return (size_t)column;
+    if (IS_DOUBLE) return (size_t)column;
     return dense_front_strip_column(column);
 }
 

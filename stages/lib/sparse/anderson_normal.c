@@ -119,7 +119,7 @@ void anderson_normal_step(struct anderson_normal *a, double *step)
 {
     double lower[ANDERSON_NORMAL_DEPTH][ANDERSON_NORMAL_DEPTH],
         part[ANDERSON_NORMAL_DEPTH];
-    bool good[ANDERSON_NORMAL_DEPTH];
+    bool good[ANDERSON_NORMAL_DEPTH] = {0};
     int at[ANDERSON_NORMAL_DEPTH];
     keep(a, step);
     const int n = a->n, m = a->n_kept;

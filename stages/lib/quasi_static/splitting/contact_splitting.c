@@ -83,7 +83,7 @@ static void move_contacts(struct quasi_static *qs, struct splitting *s)
     for (int c = 0; c < s->n_near; c++) {
         const struct contact_pair *pair = &qs->pair[s->near[c]];
         double load[COMPONENTS] = {0};
-        contact_law(pair, s->stiffness, s->force + 3 * c, s->place[c], load);
+        contact_law(pair, s->stiffness, s->force + (ptrdiff_t)3 * c, s->place[c], load);
         if (pair->is_detached) continue;
         for (int k = 0; k < 3; k++)
             load[k] -= s->stiffness * s->place[c][k];
