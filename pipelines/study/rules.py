@@ -78,8 +78,8 @@ def write_rules(plan, made, wanted, stale, folder, name):
     stale = set(stale)
     inputs = {path: [each.path for part in parts for each in part.inputs if isinstance(each, Artifact) and each.path in made]
               for path, parts in plan.parts.items()}
-    for path in wanted:
-        os.makedirs(os.path.join(folder, os.path.dirname(path)), exist_ok=True)
+    for place in {os.path.dirname(path) for path in wanted}:
+        os.makedirs(os.path.join(folder, place), exist_ok=True)
     with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
         file.write(f"TARGETS := {' '.join(wanted)}\ncomma := ,\nMEMO := {in_make(shlex.quote(MEMO))}\n"
                    f"{TIME if os.path.exists('/usr/bin/time') else ''}{HEAD}")

@@ -2,6 +2,7 @@
 #include "warnings.h"
 
 #include "basics/status.h"
+#include "geometry/porosity.h"
 
 #include <math.h>
 
@@ -97,9 +98,7 @@ static void warn_if_sudden(const struct packing *packing,
     const double stiffness = bond->kind == DEM_PARALLEL_BOND
                                  ? bond->normal_stiffness
                                  : settings->material.normal_stiffness;
-    double length = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        length += 2 * packing->radius[i] / packing->n_particle;
+    const double length = 2 * mean_radius(packing);
     const double breaks = bond->normal_strength / (stiffness * length);
     if (packing->n_bond > 0 && response->most_at_once > much * breaks)
         report("grains shrank by up to %.2g at once, and a stretch of %.2g breaks a "

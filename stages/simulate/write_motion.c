@@ -8,9 +8,8 @@
 // the grains.
 #include "write_motion.h"
 
-#include "control.h"
-
 #include "basics/memory.h"
+#include "control.h"
 #include "geometry/neighbours.h"
 
 #include <math.h>
