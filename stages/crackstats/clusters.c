@@ -13,6 +13,8 @@
 // with `near` the mean radius. Ends are those of the solid grains, not of the box.
 #include "clusters.h"
 
+#include "geometry/porosity.h"
+
 #include <stdlib.h>
 
 // A grain in the tree of its cluster; the sums are valid at the root.
@@ -64,14 +66,6 @@ static void join(struct tree *trees, int a, int b, struct image b_from_a)
         trees[root].at_lower[axis] |= trees[other].at_lower[axis];
         trees[root].at_upper[axis] |= trees[other].at_upper[axis];
     }
-}
-
-static double mean_radius(const struct packing *packing)
-{
-    double sum = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        sum += packing->radius[i];
-    return sum / packing->n_particle;
 }
 
 // Auxiliary grains set no end. They may be marked, which does no harm: without a bond

@@ -16,7 +16,7 @@ struct places places_init(const struct packing *packing, int n, const struct vec
         box.lower[axis] = component(packing->lower, axis);
         if (packing->periodic[axis]) box.period[axis] = component(edge, axis);
     }
-    const double two = 2 * (edge.x * edge.y * edge.z) / fmax(n, 1); // places a cell
+    const double two = 2 * box_volume(edge) / fmax(n, 1); // places a cell
     return (struct places){packing, at,
                            linked_cells_init(&box, n, at, 0, NULL, cbrt(two))};
 }

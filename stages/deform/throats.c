@@ -119,11 +119,6 @@ enum status move_throats(const struct network *before, enum clearance how,
 
 // ---- volumes ------------------------------------------------------------------------
 
-static double product(struct vector edge)
-{
-    return edge.x * edge.y * edge.z;
-}
-
 // The void of the domain, m3: its volume without all solid in the box, where what two
 // grains share counts once (geometry/porosity.h).
 static double void_of(const struct packing *packing)
@@ -135,7 +130,7 @@ static double void_of(const struct packing *packing)
     double porosity;
     slice_porosity(packing, &contacts, &box, 1, &porosity);
     free((void *)(uintptr_t)contacts.pair);
-    return packing_domain_volume(packing) - (1 - porosity) * product(edge);
+    return packing_domain_volume(packing) - (1 - porosity) * box_volume(edge);
 }
 
 static bool nothing_moved(const struct network *before, const struct network *after)

@@ -235,7 +235,7 @@ double liquid_tension(const struct drainage *drainage, const struct dem *dem)
     const struct vector edge = drainage->liquid.edge;
     double wet;
     liquid_now(drainage, dem, &wet);
-    return suction_at(drainage, dem_cycle(dem)) * wet / (edge.x * edge.y * edge.z);
+    return suction_at(drainage, dem_cycle(dem)) * wet / box_volume(edge);
 }
 
 double note_drainage(const struct drainage *drainage, const struct dem *dem, int row,

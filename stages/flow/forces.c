@@ -78,7 +78,7 @@ struct forces find_forces(const struct grains *grains, const struct cells *cells
                throat_step(grains, cells, throat));
     }
     const struct vector box = grains->box;
-    forces.velocity = scale(1 / (box.x * box.y * box.z), forces.velocity);
+    forces.velocity = scale(1 / box_volume(box), forces.velocity);
     forces.mean_pressure = volume > 0 ? pressure_sum / volume : 0;
     return forces;
 }

@@ -19,6 +19,7 @@
 #include "pack.h"
 
 #include "basics/memory.h"
+#include "geometry/porosity.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -137,14 +138,6 @@ enum { SETTLING_NUMBERS = sizeof(struct settling) / sizeof(double) };
 static double fall_speed(const struct making *making, double height)
 {
     return sqrt(2 * making->how->gravity * height);
-}
-
-static double mean_radius(const struct packing *packing)
-{
-    double radius = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        radius += packing->radius[i] / packing->n_particle;
-    return radius;
 }
 
 // Adapts the step, and ends the fall from HEIGHT when it is over.

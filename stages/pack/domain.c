@@ -49,7 +49,7 @@ double domain_volume(const struct domain *domain)
     double volume = 0;
     switch (domain->shape) {
     case DOMAIN_BOX:
-        volume = edge.x * edge.y * edge.z;
+        volume = box_volume(edge);
         break;
     case DOMAIN_CYLINDER:
     case DOMAIN_RING:
@@ -63,7 +63,7 @@ double domain_volume(const struct domain *domain)
     case CUT_NONE:
         return volume;
     case CUT_BOX:
-        return volume - cut.x * cut.y * cut.z;
+        return volume - box_volume(cut);
     case CUT_CYLINDER:
         return volume - hole * cut.z;
     case CUT_SPHERE:

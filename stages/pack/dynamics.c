@@ -290,7 +290,7 @@ double mean_stress(const struct making *making, const struct dem *dem)
     struct vector lower, upper;
     dem_box(dem, &lower, &upper);
     const struct vector edge = subtract(upper, lower);
-    const double room = domain_volume(making->domain) / (edge.x * edge.y * edge.z);
+    const double room = domain_volume(making->domain) / box_volume(edge);
     return sum / making->domain->dimensions / room;
 }
 

@@ -92,7 +92,7 @@ static double porosity_in(const struct domain *domain, const struct packing *pac
     const double porosity = packing_porosity(packing);
     if (domain->shape == DOMAIN_BOX && domain->cut == CUT_NONE) return porosity;
     const struct vector edge = subtract(packing->upper, packing->lower);
-    return 1 - (1 - porosity) * (edge.x * edge.y * edge.z / domain_volume(domain));
+    return 1 - (1 - porosity) * (box_volume(edge) / domain_volume(domain));
 }
 
 // What the dynamics came to, for the report; NULL when there was none.

@@ -429,7 +429,7 @@ static enum status lattice_count(const struct pack_parameters *parameters,
     if (status) return status;
     const struct vector edge = subtract(domain.upper, domain.lower);
     *grains = (double)lattice_grains(lattice, counts) * domain_volume(&domain) /
-              (edge.x * edge.y * edge.z);
+              box_volume(edge);
     return STATUS_OK;
 }
 

@@ -210,7 +210,7 @@ static void record_stress(struct record *record, const struct scene *scene,
     struct vector lower, upper;
     dem_box(dem, &lower, &upper);
     const struct vector edge = subtract(upper, lower);
-    const double between = room(scene, dem), box = edge.x * edge.y * edge.z;
+    const double between = room(scene, dem), box = box_volume(edge);
     double stress[3][3];
     for (int k = 0; k < 3; k++)
         for (int l = 0; l < 3; l++)

@@ -178,8 +178,7 @@ static double mean_pressure(const struct run *run, const struct dem_census *cens
     struct vector lower, upper;
     dem_box(dem_of(run), &lower, &upper);
     const struct vector edge = subtract(upper, lower);
-    const double between = room(run->scene, dem_of(run)),
-                 box = edge.x * edge.y * edge.z;
+    const double between = room(run->scene, dem_of(run)), box = box_volume(edge);
     const double sum =
         census->stress[0][0] + census->stress[1][1] + census->stress[2][2];
     return sum / 3 * (between > 0 ? box / between : 1);

@@ -160,7 +160,7 @@ static double bounded_volume(const struct packing *packing)
                                               [BODY_SPHERE] = M_PI / 6,
                                               [BODY_DISC] = M_PI / 4};
     const struct vector edge = subtract(packing->upper, packing->lower);
-    const double around = edge.x * edge.y * edge.z;
+    const double around = box_volume(edge);
     double within = 0, left_out = 0;
     for (int k = 0; k < packing->n_body; k++) {
         const struct body *body = &packing->body[k];

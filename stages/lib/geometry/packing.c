@@ -82,23 +82,18 @@ struct vector image_apart(const struct packing *packing, struct vector from,
     return add(subtract(to, from), image_offset(packing, image));
 }
 
-static double edges_product(struct vector edge)
-{
-    return edge.x * edge.y * edge.z;
-}
-
 static double volume_of(const struct body *body)
 {
     static const double share[] = {[BODY_BOX] = 1,
                                    [BODY_CYLINDER] = M_PI / 4,
                                    [BODY_SPHERE] = M_PI / 6,
                                    [BODY_DISC] = M_PI / 4};
-    return share[body->shape] * edges_product(subtract(body->upper, body->lower));
+    return share[body->shape] * box_volume(subtract(body->upper, body->lower));
 }
 
 double packing_domain_volume(const struct packing *packing)
 {
-    double room = edges_product(subtract(packing->upper, packing->lower)), holes = 0;
+    double room = box_volume(subtract(packing->upper, packing->lower)), holes = 0;
     for (int k = 0; k < packing->n_body; k++) {
         if (packing->body[k].within) room = volume_of(&packing->body[k]);
         if (!packing->body[k].within) holes += volume_of(&packing->body[k]);

@@ -196,7 +196,7 @@ bool radial_distribution(const struct packing *packing, const struct window *win
         count_around(&cells, i, &tally);
 
     const struct vector edge = cells.edge;
-    const double space = flat ? edge.x * edge.z : edge.x * edge.y * edge.z;
+    const double space = flat ? edge.x * edge.z : box_volume(edge);
     for (int k = 0; k < count && cells.n > 1; k++) {
         const double inner = k ? ball_in_window(&cells, flat, (k - 0.5) * width) : 0;
         const double shell = ball_in_window(&cells, flat, (k + 0.5) * width) - inner;

@@ -71,6 +71,12 @@ static inline struct vector midpoint(struct vector a, struct vector b)
     return add(a, scale(0.5, subtract(b, a)));
 }
 
+// The volume of a box with the edges A.
+static inline double box_volume(struct vector a)
+{
+    return a.x * a.y * a.z;
+}
+
 // Component 0, 1 or 2. AXIS 2 is taken for any other number.
 static inline double component(struct vector a, int axis)
 {
