@@ -5,7 +5,6 @@ finite elements for what a crack on a rigid floor releases, and a lattice in clo
 import json
 import math
 import os
-import re
 import subprocess
 import sys
 
@@ -15,11 +14,12 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch, sets
+
+sys.path[:0] = ["pipelines/lib", "pipelines/studies/critical-thickness"]
+import criterion
 
 REPORT = "pipelines/studies/critical-thickness/report"
-with open(REPORT, encoding="utf-8") as file:
-    RELEASED = float(re.search(r"^RELEASED = (.*)$", file.read(), re.M)[1])
 
 
 def stiffness(a, b, matrix):
@@ -64,7 +64,7 @@ with open("samples/craquelure-40.json", encoding="utf-8") as file:
     bond = json.load(file)["dem-replay"]["bond"]
 ratio = bond["shear_stiffness"] / bond["normal_stiffness"]
 found = [released((1 - ratio) / (4 + ratio), count) for count in (8, 16)]
-ok(abs(found[1] - found[0]) < 0.01 and abs(found[1] - RELEASED) < 0.01, "what a crack on a rigid floor releases", found)
+ok(abs(found[1] - found[0]) < 0.01 and abs(found[1] - criterion.RELEASED) < 0.01, "what a crack on a rigid floor releases", found)
 
 # A lattice of touching grains: all bonds along it break at the strain s/(k 2R), and it carries k A 2R e
 # in every one of them.
@@ -94,8 +94,41 @@ with scratch() as folder:
     slope = layers * STIFFNESS * AREA
     energy = STRENGTH ** 2 * AREA / (2 * STIFFNESS) * layers / (2 * RADIUS * depth)
     nu = (1 - 0.4) / (4 + 0.4)
-    griffith = math.sqrt(energy / (RELEASED * (1 + nu) * slope))
+    griffith = math.sqrt(energy / (criterion.RELEASED * (1 + nu) * slope))
     ok(abs(cells[3] - griffith) < 1e-4 and cells[2] == 0, "Griffith's strain of a lattice", f"{cells} {griffith}")
+
+    # A small layer of unlike grains. With all stiffnesses twice as large it breaks at half the strain. Where suction
+    # draws it together, Griffith's strain has the two surfaces of water that a crack makes as well.
+    def replay(variant, scene, *settings):
+        os.mkdir(at("3-1" + variant))
+        run("dem-replay", "-q", "-p", scene, *sets("snapshots=[0.4]", *settings), at("small.h5"), "-o",
+            at(f"3-1{variant}/response.h5"))
+        return at(f"3-1{variant}/response.h5")
+
+    DRY, WET = "samples/craquelure-40.json", "samples/craquelure-wet-40.json"
+    run("pack", "-q", "-p", DRY, *sets("slab.upper=1.56e-6", "upper=[4.16e-6,4.16e-6,2.08e-6]"), "-o", at("small.h5"))
+    slowly = "shrinkage.law=uniform", "cycles=48", "most_cycles=192"
+    plain = replay("", DRY, *slowly, "shrinkage.strain=0.02")
+    stiff = replay("-stiff", DRY, *slowly, "shrinkage.strain=0.01", "normal_stiffness=40", "shear_stiffness=20",
+                   "bond.normal_stiffness=4.4e14", "bond.shear_stiffness=1.76e14")
+    wet = replay("-suction", WET, "capillary.steps=8")
+    subprocess.run([os.path.dirname(REPORT) + "/bonds", "table", plain, stiff, wet, at("bonds.md")], check=True)
+    with open(at("bonds.md"), encoding="utf-8") as file:
+        usual, half, drawn = ([float(cell) for cell in line.split("|")[3:-1]] for line in file.read().splitlines()
+                              if line.startswith("|") and "---" not in line and "diameters" not in line)
+    ok(abs(half[0] - usual[0] / 2) < 0.02 / 36 and abs(half[2] - usual[2] / 2) < 1e-4 and usual[0] > 0.01,
+       "twice as stiff: half the strain", f"{usual} {half}")
+    with h5py.File(plain) as dry, h5py.File(wet) as file:
+        first = dry["history/lateral_tension"][1] / (0.02 * (1 - dry["history/saturation"][1]))
+        step = file["history/lateral_tension"][:].argmax()
+        tension, liquid = (file["history"][name][step] for name in ("lateral_tension", "liquid_volume"))
+        height, radius = file["particles/position"][:, 2], file["particles/radius"][:]
+        box = 4.16e-6 ** 2 * (height + radius).max() - 4.16e-6 ** 2 * (height - radius).min()
+    bonds = usual[2] ** 2 * (1.8 / 2.3) ** 2  # Griffith's strains are as the square roots of energies
+    both = bonds * (1 + 2 * 0.0727 * liquid / box / criterion.Layer(wet).toughness)
+    ok(abs(drawn[0] - tension / 1e6) < 0.006 and abs(drawn[2] / (tension / first / math.sqrt(bonds)) - 1) < 0.03
+       and abs(drawn[3] / (tension / first / math.sqrt(both)) - 1) < 0.03 and drawn[3] < drawn[2] / 1.5,
+       "suction beside Griffith's criterion, with two surfaces of water", f"{drawn} {both / bonds}")
 
     # A slit in a wide lattice of the grains that it is made for: rows of centres at odd multiples of the radius,
     # the floor at 3.6 radii. Of the middle row of 15, 4 grains each way from the middle go, in 5 of 7 layers.
