@@ -41,7 +41,7 @@ rate_drop_names := ten layers-1 layers-40 two one half fifth tenth lumped square
 rate_drop_seeded := $(foreach f,0 0.5,$(rate_drop_seeds:%=$f-%))
 rate_drop_files := $(rate_drop_names:%=$(rate_drop)/%.h5) $(rate_drop_seeded:%=$(rate_drop)/seed-%.h5)
 
-rate-drop: ## what the first fall of the drying rate hangs on (minutes)
+rate-drop: ## what the first fall of the drying rate depends on (minutes)
 
 ifneq ($(call asked,rate-drop,$(rate_drop)),)
 # Folder $1: grains with overrides $2, their network with overrides $3.
