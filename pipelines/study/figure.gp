@@ -25,8 +25,7 @@ do for [m = 0:panels - 1] {
     if (kind eq "curves") {
         eval "set xrange " . xrange
         if (logarithmic) { set logscale x; set format x "%.2g" } else { set xtics step }
-        if (strlen(xmarks)) { set xtics (part(xmarks, 1) real(part(xmarks, 1))) }
-        do for [k = 2:parts(xmarks)] { set xtics add (part(xmarks, k) real(part(xmarks, k))) }
+        if (strlen(xmarks)) { eval "set xtics " . xmarks }
         set xlabel xtitle offset 0,0.3
         plot for [s = 0:count - 1] sprintf("%s/curve-%d-%d", tables, m, s) using 1:3:4 with filledcurves \
                 linecolor rgb series[1 + s % 6] notitle, \

@@ -108,9 +108,10 @@ def span_of(axis):
 
 
 def marks_of(axis):
-    """Labels of a logarithmic axis on which there are hardly any powers of ten; "" for gnuplot's own."""
+    """Labels of a logarithmic axis on which there are hardly any powers of ten, for gnuplot, which takes the
+    text "5e+04" for no number; "" for its own."""
     few = axis.log and len(axis.values) <= 10 and max(axis.values) < 30 * min(axis.values)
-    return "|".join(f"{x:.3g}" for x in axis.values) if few else ""
+    return "(" + ", ".join(f'"{x:.3g}" {x:.9g}' for x in axis.values) + ")" if few else ""
 
 
 def step_of(values):

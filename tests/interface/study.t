@@ -151,6 +151,13 @@ ok(fine and [[r["stress.last"], r["rings.mean"], r["nothing"]] for r in found]
    "lists are measured too, and what is nowhere is left out of the picture", (wrong, found))
 ok("measure nothing: none of the 2 done runs has such a number" in wrong and wrong.count("measure ") == 1, "and is told", wrong)
 
+# Values of a short logarithmic axis are its labels, also where they have an exponent and no point.
+write("logarithmic.json", {"scene": "scene.json", "seeds": 1, "axes": [
+    {"key": "dem-replay.bond.normal_strength", "from": 5e4, "to": 1e5, "count": 2, "scale": "log"}]})
+fine, *_ = study("make", "logarithmic.json")
+picture = read(at("runs/logarithmic/figure.svg")).decode() if fine else ""
+ok(all(f">{label}<" in picture for label in ("5e+04", "1e+05")), "labels of a logarithmic axis", picture[-400:])
+
 # ---- a run that fails ---------------------------------------------------------------------------------
 
 write("replay", f"""#!/bin/bash
