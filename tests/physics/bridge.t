@@ -84,4 +84,7 @@ refused("a volume of zero is refused", "bridge.volume: must be > 0 m3, got 0", r
 refused("a contact angle of 180 degrees is refused",
         "bridge.contact_angle: must be from 0 to 170 degree, got 180", radius=1, volume=1e-3,
         contact_angle=180)
+sample = subprocess.run([f"{BIN}/bridge", "-p", "samples/bridge.json"], capture_output=True, text=True)
+ok(sample.returncode == 0 and not sample.stderr and json.loads(sample.stdout)["force"] == bridge(**W11)["force"],
+   "the sample is W11, and its oil is not taken for water", sample.stderr)
 done()
