@@ -54,8 +54,7 @@ static enum status check_menisci(const struct drying_conditions *conditions,
     return STATUS_OK;
 }
 
-// Films have the viscosity of the liquid, and none has been found for menisci whose
-// suction changes with height.
+// Films have the viscosity of the liquid.
 static enum status check_films(const struct drying_conditions *conditions,
                                struct reason *reason)
 {
@@ -64,10 +63,6 @@ static enum status check_films(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "rings: must not be films where liquid is immobile: nothing "
                       "flows through films either");
-    if (conditions->gravity != 0)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "gravity: must be 0 with rings=films, is %g",
-                      conditions->gravity);
     if (!(conditions->viscosity > 0) || !isfinite(conditions->viscosity))
         return refuse(reason, STATUS_BAD_DATA,
                       "viscosity: must be above 0 with rings=films, is %g",

@@ -7,7 +7,10 @@
 //     Q = conductance r^3 / (n - m)    is the most that films can bring there, r of
 //                                      the throat that gas enters next.
 // While Q > E the liquid below loses E; then it loses Q, and the rings at node m the
-// rest, until they are dry.
+// rest, until they are dry. Under gravity
+//     E = -conductance (d(r^3)/dz + 3 weight r^4),
+// so films rise from radius r to s by the integral of t^2 / (a^4 + t^4) from s to r
+// over weight, a^4 = E / (3 weight conductance).
 #include "../test.h"
 #include "support_lattice.h"
 
@@ -85,7 +88,7 @@ struct drying {
 };
 
 static void begin_drying(struct drying *drying, struct network network,
-                         double conductance, double ring)
+                         double conductance, double ring, double weight)
 {
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct boundary_layer layer;
@@ -99,7 +102,10 @@ static void begin_drying(struct drying *drying, struct network network,
                          &layer, &reason),
                      STATUS_OK);
     drying->layer = 1 / scale.boundary_layer;
-    drying->law = (struct film_law){.conductance = conductance, .curvature = 0.5};
+    drying->law = (struct film_law){.conductance = conductance,
+                                    .curvature = 0.5,
+                                    .weight = weight,
+                                    .thickest = 0.1};
     drying->rings.of_throat = NEW_ARRAY(double, network.n_throat);
     drying->rings.at_node = NEW_ARRAY(double, network.n_node);
     for (int t = 0; t < network.n_throat; t++) {
@@ -174,8 +180,8 @@ static double volume_of(const struct chain *chain, int k)
     return M_PI * radius_of(chain, k) * radius_of(chain, k);
 }
 
-static void make_chain(struct chain *chain, int n, double reach, double ring,
-                       double narrow)
+static void make_heavy_chain(struct chain *chain, int n, double reach, double ring,
+                             double narrow, double weight)
 {
     *chain = (struct chain){.n = n, .reach = reach, .narrow = narrow};
     struct network network = lattice_column(n, spacing);
@@ -184,7 +190,13 @@ static void make_chain(struct chain *chain, int n, double reach, double ring,
             spacing * radius_of(chain, n - 1 - network.throat_nodes[t][0] / 4);
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     const double layer = 1 / drying_scale(&network, &conditions).boundary_layer;
-    begin_drying(&chain->drying, network, reach * layer / 0.001, ring);
+    begin_drying(&chain->drying, network, reach * layer / 0.001, ring, weight);
+}
+
+static void make_chain(struct chain *chain, int n, double reach, double ring,
+                       double narrow)
+{
+    make_heavy_chain(chain, n, reach, ring, narrow, 0);
 }
 
 // Node 0 is the mouth: n throats are empty, m nodes dry. What the next throat and the
@@ -331,6 +343,85 @@ static void test_radius_cubed_is_linear(void **state)
     end_drying(drying);
 }
 
+// ---- under gravity ----------------------------------------------------------------
+
+static double rise(double a, double r)
+{
+    const double x = r / a, root = sqrt(2);
+    const double part = log((x * x - root * x + 1) / (x * x + root * x + 1)) / 2;
+    return (part + atan(root * x + 1) + atan(root * x - 1)) / (2 * root * a);
+}
+
+// The radius at a node, from its level.
+static double radius_at(const struct drying *drying, int node)
+{
+    const double depth =
+        (drying->network.packing.upper.z - drying->network.node_position[node].z) /
+        spacing;
+    const double level =
+        compensated_value(drying->times.films->level[drying->network.n_throat + node]);
+    return 1 / (1 / cbrt(level) - drying->law.weight * depth);
+}
+
+// A film of 16 FINENESS throats, and how high it is when it no longer reaches the
+// mouth. Returns the largest error of heights along the film, over its length.
+static double check_heavy_chain(int fineness)
+{
+    const double weight = 0.5 / fineness, reach = 60 * fineness;
+    struct chain chain;
+    make_heavy_chain(&chain, 30 * fineness, reach, 0.01, 1, weight);
+    struct drying *drying = &chain.drying;
+    const double a = pow(0.001 / reach / (3 * weight), 0.25);
+    const double below = 1 / (10 + weight / 2); // half a throat above the menisci
+    double worst = 0;
+    int n = 0;
+    struct compensated evaporated = {0};
+    while (reached(drying) == n && n < chain.n - 1) {
+        compensated_add(&evaporated, vapour_rate(&drying->occupancy.vapour) *
+                                         emptying_times_advance(&drying->times));
+        emptying_times_empty_ended(&drying->times);
+        check_books(drying, compensated_value(evaporated));
+        n++;
+        for (int k = 1; n == 16 * fineness && k < n; k++) {
+            const double r = radius_at(drying, 4 * (chain.n - n + k));
+            const double height = (rise(a, below) - rise(a, r)) / weight;
+            worst = fmax(worst, fabs(height - k) / n);
+        }
+    }
+    const double most = (rise(a, below) - rise(a, 0)) / weight;
+    assert_within(n, most, 1.5);
+    assert_true(most < 0.35 * reach); // without gravity films reach that far
+    end_drying(drying);
+    return worst;
+}
+
+// Heights converge to the closed form as the square of the throats' length.
+static void test_films_under_gravity(void **state)
+{
+    (void)state;
+    const double coarse = check_heavy_chain(1), fine = check_heavy_chain(2),
+                 finest = check_heavy_chain(4);
+    assert_true(coarse < 2e-3);
+    assert_true(coarse > 3 * fine && fine > 3 * finest && finest > 0);
+}
+
+// No level is lost along a film that conducts 1e6 times what evaporates.
+static void test_films_at_rest_have_the_weight_of_the_liquid(void **state)
+{
+    (void)state;
+    struct chain chain;
+    make_heavy_chain(&chain, 40, 4e7, 0.01, 1, 0.5);
+    struct drying *drying = &chain.drying;
+    for (int n = 1; n <= 30; n++) {
+        emptying_times_advance(&drying->times);
+        emptying_times_empty_ended(&drying->times);
+        for (int k = 0; k < n; k++)
+            assert_close(1 / radius_at(drying, 4 * (chain.n - k)),
+                         10 + 0.5 * (n - k + 0.5), 1e-5);
+    }
+    end_drying(drying);
+}
+
 // ---- a lattice --------------------------------------------------------------------
 
 // Layers that empty from the top down, as the radii fall a little with depth. Returns
@@ -344,7 +435,7 @@ static int depth_of_films(double conductance, double *rate_per_column)
         network.throat_radius[t] = 0.2 * spacing * (1 - 1e-5 * (deep - layer));
     }
     struct drying drying;
-    begin_drying(&drying, network, conductance, 0.01);
+    begin_drying(&drying, network, conductance, 0.01, 0);
     *rate_per_column = vapour_rate(&drying.occupancy.vapour) / (side * side);
     int n_film = 0;
     struct compensated evaporated = {0};
@@ -391,6 +482,8 @@ int main(void)
         cmocka_unit_test(test_films_that_break),
         cmocka_unit_test(test_length_of_films),
         cmocka_unit_test(test_radius_cubed_is_linear),
+        cmocka_unit_test(test_films_under_gravity),
+        cmocka_unit_test(test_films_at_rest_have_the_weight_of_the_liquid),
         cmocka_unit_test(test_depth_in_a_lattice),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -11,6 +11,7 @@
 #include "basics/memory.h"
 #include "dry/liquid/losses.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 // While the network is made, a site is its place: a cluster, or n_throat + node.
@@ -23,7 +24,7 @@ struct film_links {
     const struct occupancy *occupancy;
     int n_place;
     int n, capacity;
-    struct link *link;
+    struct film_link *link;
     int *parent;   // (n_place) what films join
     bool *is_site; // (n_place)
 };
@@ -60,11 +61,19 @@ static int ends_at(const struct occupancy *occupancy, int node, struct film_end 
     return n;
 }
 
-static void add_link(struct film_links *links, int a, int b, double conductance)
+double film_depth(const struct occupancy *occupancy, int throat)
+{
+    const struct network *network = occupancy->network;
+    return (network->packing.upper.z - throat_middle(network, throat).z) /
+           occupancy->length;
+}
+
+static void add_link(struct film_links *links, int a, int b, double conductance,
+                     double depth)
 {
     if (a == b) return;
     GROW_ARRAY(links->link, links->n, links->capacity);
-    links->link[links->n++] = (struct link){{a, b}, conductance};
+    links->link[links->n++] = (struct film_link){{{a, b}, conductance}, depth, 1};
     links->is_site[a] = links->is_site[b] = true;
     unite_sets(links->parent, a, b);
 }
@@ -99,7 +108,8 @@ static void link_films(struct film_links *links)
             for (int l = 0; l < m; l++)
                 add_link(links, a[k].place, b[l].place,
                          occupancy->film_law->conductance / length * a[k].weight *
-                             b[l].weight);
+                             b[l].weight,
+                         film_depth(occupancy, t));
     }
     free(a);
     free(b);
@@ -110,7 +120,7 @@ static void link_films(struct film_links *links)
 static void number_sites(struct film_links *links, struct film_network *films)
 {
     const int n_throat = links->occupancy->network->n_throat;
-    int *site = NEW_ARRAY(int, links->n_place), n_link = 0;
+    int *site = NEW_ARRAY(int, links->n_place);
     films->place = NEW_ARRAY(int, links->n_place);
     films->root = NEW_ARRAY(int, links->n_place);
     for (int p = 0; p < links->n_place; p++) {
@@ -120,15 +130,44 @@ static void number_sites(struct film_links *links, struct film_network *films)
         films->place[films->n_site++] = p;
     }
     for (int l = 0; l < links->n; l++) {
-        struct link link = links->link[l];
-        if (set_root(links->parent, link.site[0]) >= n_throat) continue;
+        struct film_link link = links->link[l];
+        if (set_root(links->parent, link.link.site[0]) >= n_throat) continue;
         for (int end = 0; end < 2; end++)
-            link.site[end] = site[link.site[end]];
-        links->link[n_link++] = link;
+            link.link.site[end] = site[link.link.site[end]];
+        links->link[films->n_link++] = link;
     }
-    films->matrix =
-        conductance_matrix_of_links(films->n_site, films->n_site, n_link, links->link);
     free(site);
+}
+
+// The matrix of the links, each with its ratio.
+static void fill_matrix(struct film_network *films)
+{
+    struct link *link = NEW_ARRAY(struct link, films->n_link);
+    for (int l = 0; l < films->n_link; l++) {
+        link[l] = films->link[l].link;
+        link[l].conductance *= films->link[l].ratio;
+    }
+    conductance_matrix_free(&films->matrix);
+    films->matrix =
+        conductance_matrix_of_links(films->n_site, films->n_site, films->n_link, link);
+    free(link);
+}
+
+double film_network_weigh(struct film_network *films, const struct film_law *law,
+                          const struct compensated *level)
+{
+    double changed = 0;
+    for (int l = 0; l < films->n_link; l++) {
+        struct film_link *film = &films->link[l];
+        const struct compensated a = level[film->link.site[0]],
+                                 b = level[film->link.site[1]];
+        const double mean = (compensated_value(a) + compensated_value(b)) / 2;
+        const double change = film_flow_ratio(law, mean, film->depth) - film->ratio;
+        film->ratio += change;
+        changed += film->link.conductance * fabs(change * compensated_difference(a, b));
+    }
+    fill_matrix(films);
+    return changed;
 }
 
 struct film_network film_network_init(const struct occupancy *occupancy)
@@ -143,7 +182,8 @@ struct film_network film_network_init(const struct occupancy *occupancy)
         links.parent[p] = p;
     link_films(&links);
     number_sites(&links, &films);
-    free(links.link);
+    films.link = links.link;
+    fill_matrix(&films);
     free(links.parent);
     free(links.is_site);
     return films;
@@ -153,6 +193,7 @@ void film_network_free(struct film_network *films)
 {
     free(films->place);
     free(films->root);
+    free(films->link);
     conductance_matrix_free(&films->matrix);
     *films = (struct film_network){0};
 }

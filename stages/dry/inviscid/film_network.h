@@ -12,17 +12,35 @@
 #include "dry/liquid/occupancy.h"
 #include "elimination/conductance_matrix.h"
 
+// A film between two places.
+struct film_link {
+    struct link link;
+    double depth; // of the throat's middle below the top of the box, scaled
+    double ratio; // of what flows there to what would without gravity
+};
+
 // It owns its arrays. Only sites that films join to a cluster are there.
 struct film_network {
     int n_site;
     int *place;                       // (n_site) a cluster, or n_throat + node
     int *root;                        // (n_site) the first site that films join to it
     struct conductance_matrix matrix; // (n_site) conductances, scaled
+    int n_link;
+    struct film_link *link; // (n_link) of sites
 };
 
 // Of OCCUPANCY, whose film law says what a throat conducts. O(n_node). The caller frees
 // it with film_network_free.
 struct film_network film_network_init(const struct occupancy *occupancy);
+
+// How deep the middle of THROAT is below the top of the box, scaled.
+double film_depth(const struct occupancy *occupancy, int throat);
+
+// Under gravity: conductances as LEVELs (n_site) make them. Returns by how much the
+// flows between sites with these levels change, in all.
+double film_network_weigh(struct film_network *films, const struct film_law *law,
+                          const struct compensated *level);
+
 void film_network_free(struct film_network *films);
 
 #endif

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The obstacle problem of films (film_flow.h) with, at each site,
 //     rings at a node:  least = 0,   taken = what the node evaporates,
-//     a cluster:        least = (curvature R)^3, R the throat it empties now or next,
+//     a cluster:        least = (curvature R)^3, R the throat it empties now or next
+//                       (under gravity as film_law.h says),
 //                       taken = what it evaporates itself.
 // A node whose level is above 0 is reached: it stays wet, and its rings keep their
 // liquid. At 0 the film ends, and the rings supply what it does not bring (the
@@ -31,6 +32,10 @@ static const double MOST_STRAY = 2;
 // part of the drying rate, but not sooner than after such a part of the step: a film
 // that fails for a moment lets rings dry, which stay dry.
 static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
+
+// Rounds of levels and conductances under gravity: a few, unless the liquid of a throat
+// weighs as much as its suction.
+enum { MOST_WEIGHED = 1000 };
 
 struct film_supply *film_supply_create(const struct emptying_times *times)
 {
@@ -93,7 +98,7 @@ bool film_supply_is_due(const struct emptying_times *times)
 
 // --- finding -----------------------------------------------------------------------
 
-// The cube of the radius of films beside CLUSTER.
+// The level of films beside CLUSTER.
 static double least_level(const struct emptying_times *times, int cluster)
 {
     struct occupancy *occupancy = times->occupancy;
@@ -103,7 +108,7 @@ static double least_level(const struct emptying_times *times, int cluster)
         losing >= 0 ? losing : clusters_invasion_throat(&occupancy->clusters, cluster);
     const double radius = occupancy->film_law->curvature *
                           occupancy->network->throat_radius[throat] / occupancy->length;
-    return radius * radius * radius;
+    return film_level(occupancy->film_law, radius, film_depth(occupancy, throat));
 }
 
 // In each part of the network, holds the cluster of the largest least. No level is
@@ -237,6 +242,22 @@ static void forget_unreached(struct film_supply *films,
     free(is_site);
 }
 
+// Under gravity the conductances depend on the levels: from one to the other, until no
+// flow changes any more.
+static bool find_levels(const struct emptying_times *times,
+                        struct film_network *network, struct film_flow *flow)
+{
+    const struct film_law *law = times->occupancy->film_law;
+    const double tolerance = TOLERANCE * vapour_rate(&times->occupancy->vapour);
+    if (!(law->weight > 0)) return film_flow_solve(flow, tolerance);
+    film_network_weigh(network, law, flow->level);
+    for (int round = 0; round < MOST_WEIGHED; round++) {
+        if (!film_flow_solve(flow, tolerance)) return false;
+        if (film_network_weigh(network, law, flow->level) <= tolerance) return true;
+    }
+    return false;
+}
+
 void film_supply_find(struct emptying_times *times)
 {
     struct film_supply *films = times->films;
@@ -255,9 +276,7 @@ void film_supply_find(struct emptying_times *times)
                              .level = NEW_ARRAY(struct compensated, n),
                              .surplus = NEW_ARRAY(double, n)};
     pose(times, &network, taken, least, &flow);
-    if (n > 0)
-        films->failed |=
-            !film_flow_solve(&flow, TOLERANCE * vapour_rate(&times->occupancy->vapour));
+    if (n > 0) films->failed |= !find_levels(times, &network, &flow);
     for (int p = 0; p < times->n_place; p++)
         films->is_known[p] = false;
     for (int i = 0; i < n; i++) {

@@ -172,7 +172,7 @@ static enum status make_occupancy(const struct network *network, struct run *run
                                   reason);
     if (status) return status;
     if (conditions->rings == RINGS_FILMS)
-        run->film_law = film_law_of(conditions, &run->scale);
+        run->film_law = film_law_of(network, conditions, &run->scale);
     double *entry_priority = conditions->gravity != 0
                                  ? find_entry_priority(network, conditions, &run->scale)
                                  : NULL; // by radius
