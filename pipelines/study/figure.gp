@@ -27,6 +27,8 @@ do for [m = 0:panels - 1] {
         if (logarithmic) { set logscale x; set format x "%.2g" } else { set xtics step }
         if (strlen(xmarks)) { eval "set xtics " . xmarks }
         set xlabel xtitle offset 0,0.3
+        # Above the curves of the first panel is room for their names.
+        if (count > 1) { set offsets graph 0.04, graph 0.04, graph (m ? 0.06 : 1 / (0.96 - 0.085 * (count < 9 ? count : 8)) - 1), graph 0.06 }
         plot for [s = 0:count - 1] sprintf("%s/curve-%d-%d", tables, m, s) using 1:3:4 with filledcurves \
                 linecolor rgb series[1 + s % 6] notitle, \
              for [s = 0:count - 1] sprintf("%s/curve-%d-%d", tables, m, s) using 1:2 with linespoints linewidth 2 \

@@ -36,4 +36,5 @@ monte-carlo: ## cracks over 10 realisations in both drying limits, tested agains
 soft: ## shrinkage and spring-back of the soft aggregate, and their picture
 force-history: ## the force of one contact over the drying, K's Fig. 5.12
 fronts: ## pictures of drying fronts in inviscid, viscous and immobile liquid (a minute)
+films: ## how long films keep a column of beads wet, with and without gravity (two minutes)
 gradients: ## forces with liquid pressure gradients on and off, and their picture (seconds)
