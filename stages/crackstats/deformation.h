@@ -13,8 +13,9 @@ struct deformation {
 };
 
 // Deformation of the largest fragment at snapshot S. G is the displacement gradient
-// that fits its grains best by least squares; 0 along an axis in which all lie in one
-// plane. All NAN when it has fewer than four grains.
+// that fits its grains best by least squares, across the sides of a box that repeats
+// too; 0 along an axis in which all lie in one plane, or along which it leads around
+// the box. All NAN when it has fewer than four grains.
 struct deformation body_deformation(const struct run *run, int s);
 
 #endif

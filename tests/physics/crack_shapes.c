@@ -294,6 +294,43 @@ static void test_three_grains_have_no_strain(void **state)
     run_free(&run);
 }
 
+// The planes 4, 5, 0, 1 of six, whole across the side of the box: it shrinks as it would
+// within the box. A body around the box keeps its length, wherever the box begins.
+static void test_fragments_across_a_side_are_whole(void **state)
+{
+    (void)state;
+    struct run run = lattice(6, 3, 5, true);
+    for (int b = 0; b < run.packing.n_bond; b++) {
+        const int32_t *pair = run.packing.bond[b];
+        if (pair[1] != pair[0] + 1) continue; // along x, within the box
+        if (pair[0] % 6 == 1 || pair[0] % 6 == 3) crack(&run, b);
+    }
+    displace(&run, 1);
+    for (int i = 0; i < run.packing.n_particle; i++) {
+        struct vector place = run.packing.position[i];
+        if (i % 6 < 2) place.x += 6;
+        run.displacement[i] = displaced(place, 1);
+    }
+    const struct deformation found = body_deformation(&run, 0);
+    const double strain[STRAIN_COUNT] = {-0.02, -0.05, 0.01, -0.001, 0.0015, 0.001};
+    for (int k = 0; k < STRAIN_COUNT; k++)
+        assert_within(found.strain[k], strain[k], 1e-14);
+    run_free(&run);
+
+    for (int begin = 0; begin < 6; begin++) {
+        run = lattice(6, 3, 5, true);
+        displace(&run, 1);
+        for (int i = 0; i < run.packing.n_particle; i++) {
+            run.displacement[i].x = 0.01 * sin((i % 6 + begin) * M_PI / 3);
+            run.displacement[i].y = -0.05 * run.packing.position[i].y;
+        }
+        const struct deformation around = body_deformation(&run, 0);
+        assert_within(around.strain[0], 0, 1e-14);
+        assert_within(around.strain[1], -0.05, 1e-14);
+        run_free(&run);
+    }
+}
+
 // ---- orientation --------------------------------------------------------------------
 
 static void test_upright_and_level_cracks(void **state)
@@ -352,6 +389,7 @@ int main(void)
         cmocka_unit_test(test_only_the_largest_fragment_counts),
         cmocka_unit_test(test_four_grains_have_one),
         cmocka_unit_test(test_three_grains_have_no_strain),
+        cmocka_unit_test(test_fragments_across_a_side_are_whole),
         cmocka_unit_test(test_upright_and_level_cracks),
         cmocka_unit_test(test_oblique_cracks),
     };
