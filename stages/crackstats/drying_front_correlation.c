@@ -4,9 +4,9 @@
 //     left = S_s(k - 1) - S_s(k)    (saturation that the slice loses in the interval)
 //     opened = cracks that open in the slice in the interval
 // says whether cracks open where the liquid leaves. Also counted: the saturation of the
-// slice in which each crack opens. Before the first interval every slice counts as
-// full: S_s(-1) = 1. For sums over runs 1 becomes the number of runs, which scales
-// `left` and so leaves the correlation as it is for means.
+// slice in which each crack opens. Before the first interval a slice has what the
+// drying begins with, S_s(-1): 1 in a full body, less in one that begins partly empty.
+// Sums over runs scale `left`, which leaves the correlation as it is for means.
 #include "drying_front_correlation.h"
 
 #include "basics/memory.h"
@@ -16,15 +16,23 @@
 
 struct drying_front drying_front_init(struct classes classes)
 {
+    const size_t n_slice = (size_t)classes.n_slice;
     return (struct drying_front){
-        .slice =
-            NEW_ARRAY(double, (size_t)classes.n_interval *(size_t)classes.n_slice)};
+        .first = NEW_ARRAY(double, n_slice),
+        .slice = NEW_ARRAY(double, (size_t)classes.n_interval *n_slice)};
 }
 
 void drying_front_free(struct drying_front *front)
 {
+    free(front->first);
     free(front->slice);
-    front->slice = NULL;
+    *front = (struct drying_front){0};
+}
+
+static void add_each(double *sum, const double *more, size_t n)
+{
+    for (size_t k = 0; k < n; k++)
+        sum[k] += more[k];
 }
 
 static void add_slices(struct drying_front *front, const struct liquid *liquid,
@@ -36,9 +44,11 @@ static void add_slices(struct drying_front *front, const struct liquid *liquid,
                                                  classes.n_interval);
     double *slice =
         slice_saturations(liquid, classes.n_slice, time, classes.n_interval);
-    const size_t n = (size_t)classes.n_interval * (size_t)classes.n_slice;
-    for (size_t k = 0; k < n; k++)
-        front->slice[k] += slice[k];
+    double *first = slice_saturations(liquid, classes.n_slice, liquid->record.time, 1);
+    const size_t n_slice = (size_t)classes.n_slice;
+    add_each(front->slice, slice, (size_t)classes.n_interval * n_slice);
+    add_each(front->first, first, n_slice);
+    free(first);
     free(slice);
     free(time);
 }
@@ -66,24 +76,24 @@ void drying_front_add(struct drying_front *front, const struct run *run,
 void drying_front_sum(struct drying_front *sum, const struct drying_front *front,
                       struct classes classes)
 {
-    const size_t n = (size_t)classes.n_interval * (size_t)classes.n_slice;
-    for (size_t k = 0; k < n; k++)
-        sum->slice[k] += front->slice[k];
+    const size_t n_slice = (size_t)classes.n_slice;
+    add_each(sum->slice, front->slice, (size_t)classes.n_interval * n_slice);
+    add_each(sum->first, front->first, n_slice);
     for (int k = 0; k < LOCAL_CLASSES; k++)
         sum->local[k] += front->local[k];
     sum->local_sum += front->local_sum;
     sum->cracks += front->cracks;
 }
 
-double front_correlation(const double *slice, const double *place,
-                         struct classes classes, int runs)
+double front_correlation(const double *first, const double *slice, const double *place,
+                         struct classes classes)
 {
     const int n_slice = classes.n_slice, n = classes.n_interval * n_slice;
     double *left = NEW_ARRAY(double, n), *opened = NEW_ARRAY(double, n);
     size_t count = 0;
     for (int k = 0; k < n; k++) {
         if (isnan(slice[k])) continue;
-        left[count] = (k < n_slice ? runs : slice[k - n_slice]) - slice[k];
+        left[count] = (k < n_slice ? first[k] : slice[k - n_slice]) - slice[k];
         opened[count++] = place[k];
     }
     double correlation = NAN;

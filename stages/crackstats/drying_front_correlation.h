@@ -11,6 +11,7 @@ enum { LOCAL_CLASSES = 10 };
 // For one run, or summed over many. A crack counts half in each slice of its bond
 // (slices_of_bond).
 struct drying_front {
+    double *first; // (n_slice) saturation of each slice as drying begins
     double *slice; // (n_interval, n_slice) saturation of each slice when the network's
                    // is (n_interval - k - 1) / n_interval; NAN without liquid
     double local[LOCAL_CLASSES]; // cracks by the saturation of their slice, 1 to 0
@@ -33,9 +34,10 @@ void drying_front_sum(struct drying_front *sum, const struct drying_front *front
                       struct classes classes);
 
 // Pearson's correlation, over all slices and intervals of saturation, of the cracks
-// that opened in them (counts.place) with the saturation that the slice lost. SLICE and
-// PLACE are sums over RUNS runs. NAN if either is the same everywhere.
-double front_correlation(const double *slice, const double *place,
-                         struct classes classes, int runs);
+// that opened in them (counts.place) with the saturation that the slice lost. FIRST,
+// SLICE and PLACE are those of one run, or sums over the same runs. NAN if either is
+// the same everywhere.
+double front_correlation(const double *first, const double *slice, const double *place,
+                         struct classes classes);
 
 #endif

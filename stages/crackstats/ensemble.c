@@ -110,7 +110,7 @@ static void note_front(double *value, const struct run *run,
     struct drying_front front = drying_front_init(ensemble->classes);
     drying_front_add(&front, run, liquid, ensemble->classes);
     value[FRONT_CORRELATION] =
-        front_correlation(front.slice, place, ensemble->classes, 1);
+        front_correlation(front.first, front.slice, place, ensemble->classes);
     value[FRONT_SATURATION] = front.cracks > 0 ? front.local_sum / front.cracks : NAN;
     drying_front_sum(&ensemble->front, &front, ensemble->classes);
     drying_front_free(&front);

@@ -213,8 +213,8 @@ static json_t *front(const struct ensemble *ensemble)
                              (LOCAL_CLASSES - k - 1.0) / LOCAL_CLASSES, "cracks",
                              json_value(ensemble->front.local[k] / runs)));
     const double correlation =
-        front_correlation(ensemble->front.slice, ensemble->counts.place,
-                          ensemble->classes, ensemble->n_run);
+        front_correlation(ensemble->front.first, ensemble->front.slice,
+                          ensemble->counts.place, ensemble->classes);
     return json_pack("{s:o,s:o}", "correlation", json_value(correlation),
                      "slice_saturation", local);
 }

@@ -225,49 +225,59 @@ with scratch() as folder:
 
     # ---- liquid ---------------------------------------------------------------------
     slices, intervals = 5, 10
-    shutil.copy(at("response"), at("wet"))
-    with h5py.File(at("drying")) as file:
-        step_time, step_saturation = file["history/time"][:], file["history/saturation"][:]
-        kind = file["throats/kind"][:]
-        offset, throat = file["changes/offset"][:], file["changes/throat"][:]
-        to = file["changes/saturation"][:]
-        ends = file["nodes/position"][:][file["throats/nodes"][:]]
-        volume = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
-    states = [np.where(kind == 0, 1.0, 0.0)]
-    for k in range(len(offset) - 1):
-        state = states[-1].copy()
-        state[throat[offset[k]:offset[k + 1]]] = to[offset[k]:offset[k + 1]]
-        states.append(state)
-    states = np.array(states[1:])
-    height = 5 * d
-    middle = ends[..., 2].mean(axis=1) / height * slices
-    halves = [np.clip(np.floor(middle + shift), 0, slices - 1).astype(int)
-              for shift in (-1e-6, 1e-6)]
-    share = np.array([sum(half == s for half in halves) / 2 for s in range(slices)])
+    run("dry", "-p", SCENE, "--set", "start_saturation=0.6", at("network"), "-o", at("half-full"))
+    run("force-protocol", "-p", SCENE, "--set", "steps=5", at("half-full"), "-o", at("half-forces"))
+    run("dem-replay", "-p", SCENE, "--set", "cycles=1", at("half-forces"), "-o", at("half-response"))
+    for what, drying, response, wet in [
+            ("full at first", at("drying"), at("response"), at("wet")),
+            ("partly empty at first", at("half-full"), at("half-response"), at("half-wet"))]:
+        shutil.copy(response, wet)
+        with h5py.File(response) as file:
+            end = file["history/time"][-1]
+        with h5py.File(drying) as file:
+            step_time, step_saturation = file["history/time"][:], file["history/saturation"][:]
+            kind = file["throats/kind"][:]
+            offset, throat = file["changes/offset"][:], file["changes/throat"][:]
+            to = file["changes/saturation"][:]
+            ends = file["nodes/position"][:][file["throats/nodes"][:]]
+            volume = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
+        states = [np.where(kind == 0, 1.0, 0.0)]
+        for k in range(len(offset) - 1):
+            state = states[-1].copy()
+            state[throat[offset[k]:offset[k + 1]]] = to[offset[k]:offset[k + 1]]
+            states.append(state)
+        states = np.array(states[1:])
+        height = 5 * d
+        middle = ends[..., 2].mean(axis=1) / height * slices
+        halves = [np.clip(np.floor(middle + shift), 0, slices - 1).astype(int)
+                  for shift in (-1e-6, 1e-6)]
+        share = np.array([sum(half == s for half in halves) / 2 for s in range(slices)])
 
-    def liquid(time):
-        state = np.array([np.interp(time, step_time, states[:, t]) for t in range(len(kind))])
-        full = share * volume * (kind == 0)
-        return full @ state / full.sum(axis=1)
+        def liquid(time):
+            state = np.array([np.interp(time, step_time, states[:, t]) for t in range(len(kind))])
+            full = share * volume * (kind == 0)
+            return full @ state / full.sum(axis=1)
 
-    times = np.array([0.1, 0.3, 0.3, 0.5, 0.7]) * end
-    reached = np.interp(times, step_time, step_saturation)
-    by_hand(at("wet"), chosen, times, reached, [0, 0, 1, 1, 0])
-    stats = crackstats("--set", f"slices={slices}", at("wet"), at("drying"))
-    levels = [np.interp(-(1 - (k + 1) / intervals), -step_saturation, step_time)
-              for k in range(intervals)]
-    wanted = np.array([liquid(time) for time in levels])
-    got = np.array([p["liquid"] for p in stats["profiles"]])
-    ok(np.allclose(got, wanted, atol=1e-9), "the saturation of the slices",
-       np.abs(got - wanted).max())
-    local = [liquid(t)[s].mean() for t, s in zip(times, [[0, 1], [4], [2], [2, 3], [0]])]
-    ok(abs(stats["mean"]["front"]["saturation"] - np.mean(local)) < 1e-9,
-       "how wet the slices are in which cracks open", local)
-    cracks = np.diff([[0] * slices] + [p["cracks"] for p in stats["profiles"]], axis=0)
-    lost = -np.diff(np.vstack([np.ones(slices), wanted]), axis=0)
-    ok(abs(stats["front"]["correlation"] - np.corrcoef(cracks.ravel(), lost.ravel())[0, 1]) < 1e-9
-       and stats["front"]["correlation"] == stats["mean"]["front"]["correlation"],
-       "the correlation of cracks with the liquid that leaves", stats["front"])
+        times = np.array([0.1, 0.3, 0.3, 0.5, 0.7]) * end
+        reached = np.interp(times, step_time, step_saturation)
+        by_hand(wet, chosen, times, reached, [0, 0, 1, 1, 0])
+        stats = crackstats("--set", f"slices={slices}", wet, drying)
+        levels = [np.interp(-(1 - (k + 1) / intervals), -step_saturation, step_time)
+                  for k in range(intervals)]
+        wanted = np.array([liquid(time) for time in levels])
+        got = np.array([p["liquid"] for p in stats["profiles"]])
+        ok(np.allclose(got, wanted, atol=1e-9), f"the saturation of the slices, {what}",
+           np.abs(got - wanted).max())
+        local = [liquid(t)[s].mean() for t, s in zip(times, [[0, 1], [4], [2], [2, 3], [0]])]
+        ok(abs(stats["mean"]["front"]["saturation"] - np.mean(local)) < 1e-9,
+           f"how wet the slices are in which cracks open, {what}", local)
+        cracks = np.diff([[0] * slices] + [p["cracks"] for p in stats["profiles"]], axis=0)
+        lost = -np.diff(np.vstack([liquid(step_time[0]), wanted]), axis=0)
+        ok(abs(stats["front"]["correlation"] - np.corrcoef(cracks.ravel(), lost.ravel())[0, 1]) < 1e-9
+           and stats["front"]["correlation"] == stats["mean"]["front"]["correlation"],
+           f"the correlation of cracks with the liquid that leaves, {what}", stats["front"])
+    with h5py.File(at("response")) as file:
+        end = file["history/time"][-1]
     ok(crackstats(at("wet"), at("drying"), at("wet"))["front"] is None
        and crackstats(at("wet"), at("drying"), at("wet"), at("drying"))["runs"] == 2,
        "the drying may be left out of some runs")
