@@ -2,7 +2,8 @@
 // From artifacts to struct run and struct liquid. A schema checks types, shapes, ranges
 // and order of rows; here is checked what relates datasets to each other (65, with the
 // dataset and row):
-//     /cracks/bond    no bond breaks twice, nor after the weight alone broke it;
+//     /cracks/bond    no bond breaks twice, nor after the weight or an earlier replay
+//                     broke it;
 //     /cracks/time    none after the end, the last row of /history/time;
 //     /history/settled   is there if loads did not come to rest;
 //     /history/time      of a drying: has a row.
@@ -10,8 +11,8 @@
 // rise, so one walk along them counts the cracks under loads that did not come to rest;
 // it needs check_cracks to have passed, or it would walk beyond the last load.
 //
-// Optional: /weight_cracks/bond (none), /particles/held, /snapshots/dryness (NULL: not
-// known).
+// Optional: /weight_cracks/bond and /earlier_cracks/bond (none), /particles/held,
+// /snapshots/dryness (NULL: not known).
 #include "read.h"
 
 #include "basics/memory.h"
@@ -46,6 +47,19 @@ static void read_unsettled(struct run *run, const struct artifact *response,
     free(settled);
 }
 
+// Adds the bonds of DATASET, if there is one, to those broken before.
+static void read_before(struct run *run, const struct artifact *response,
+                        const char *dataset)
+{
+    if (!artifact_has_dataset(response, dataset)) return;
+    int n;
+    int32_t *bond = artifact_get(response, dataset, &n);
+    run->before = reallocate(run->before, (size_t)(run->n_before + n), sizeof *bond);
+    for (int k = 0; k < n; k++)
+        run->before[run->n_before++] = bond[k];
+    free(bond);
+}
+
 // Bonds never heal, and nothing breaks after the end.
 static void check_cracks(const struct run *run, const char *path)
 {
@@ -71,9 +85,8 @@ struct run read_run(const struct artifact *response)
     run.time = artifact_get(response, "/cracks/time", NULL);
     run.saturation = artifact_get(response, "/cracks/saturation", NULL);
     run.mode = artifact_get(response, "/cracks/mode", NULL);
-    if (artifact_has_dataset(response, "/weight_cracks/bond"))
-        run.weight_crack =
-            artifact_get(response, "/weight_cracks/bond", &run.n_weight_crack);
+    read_before(&run, response, "/earlier_cracks/bond");
+    read_before(&run, response, "/weight_cracks/bond");
     if (artifact_has_dataset(response, "/particles/held"))
         run.held = artifact_get(response, "/particles/held", NULL);
     run.first_period_end =

@@ -7,8 +7,9 @@
 // bonded: in a box of two grains across, where two images are as near, one of them is
 // taken, and always the same.
 //
-// Whether bonds hold: those that the weight alone broke never did as far as cracks are
-// concerned (bonds_before); those of /cracks no longer do at the end (bonds_left).
+// Whether bonds hold: those that earlier replays or the weight alone broke never did as
+// far as cracks are concerned (bonds_before); those of /cracks no longer do at the end
+// (bonds_left).
 #include "run.h"
 
 #include "basics/memory.h"
@@ -41,8 +42,8 @@ uint8_t *bonds_before(const struct run *run)
 {
     uint8_t *left = NEW_ARRAY(uint8_t, run->packing.n_bond);
     if (run->packing.n_bond) memset(left, 1, (size_t)run->packing.n_bond);
-    for (int k = 0; k < run->n_weight_crack; k++)
-        left[run->weight_crack[k]] = 0;
+    for (int k = 0; k < run->n_before; k++)
+        left[run->before[k]] = 0;
     return left;
 }
 
@@ -61,7 +62,7 @@ void run_free(struct run *run)
     free(run->time);
     free(run->saturation);
     free(run->mode);
-    free(run->weight_crack);
+    free(run->before);
     free(run->held);
     free(run->snapshot_saturation);
     free(run->displacement);

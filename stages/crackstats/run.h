@@ -15,8 +15,8 @@ struct run {
     double *time;                 // (n_crack) s, nondecreasing
     double *saturation;           // (n_crack) of the network at that time
     uint8_t *mode;                // (n_crack) 0 normal, 1 shear
-    int n_weight_crack;           // under the weight alone, before drying
-    int32_t *weight_crack;        // (n_weight_crack) bonds
+    int n_before;                 // broken in earlier replays and under the weight
+    int32_t *before;              // (n_before) bonds, each once
     uint8_t *held;                // (n_particle) 1: held; NULL: not known
     double first_period_end, end; // s; end: of the last load
     int n_unsettled;              // loads that did not come to rest
@@ -36,9 +36,9 @@ struct image bond_image(const struct packing *packing, int bond);
 // The vector from the first grain of BOND to the second before anything has moved, m.
 struct vector bond_vector(const struct packing *packing, int bond);
 
-// 1 for each bond that holds when drying begins (bonds_before: all but those that the
-// weight alone broke), or at the end (bonds_left: without those of the cracks as well).
-// (n_bond); the caller frees it.
+// 1 for each bond that holds when the run begins (bonds_before: all but those that
+// earlier replays or the weight alone broke), or at the end (bonds_left: without those
+// of the cracks as well). (n_bond); the caller frees it.
 uint8_t *bonds_before(const struct run *run);
 uint8_t *bonds_left(const struct run *run);
 

@@ -70,6 +70,7 @@ static enum status begin(struct run *run, struct reason *reason)
     const enum status status = run->engine->begin(run, reason);
     if (status) return status;
     run->engine->cracks(run, &run->n_before);
+    run->response->n_earlier_crack = run->n_before;
     run->place = (struct replay_place){first_step(run), run->engine->cycles(run)};
     return run->keeper && run->keeper->begin ? continue_replay(run, reason) : STATUS_OK;
 }
@@ -124,14 +125,17 @@ static void note_weight(struct run *run)
     response->weight_unbalanced_ratio = run->engine->unbalanced_ratio(run);
 }
 
-// The cracks under the weight are the engine's first: there was no earlier replay.
-static void take_weight_cracks(struct run *run)
+// Cracks of earlier replays are the engine's first, or those under the weight: after an
+// earlier replay the body stands already.
+static void take_cracks_before(struct run *run)
 {
     struct response *response = run->response;
     int count;
+    const struct dem_crack *cracks = run->engine->cracks(run, &count);
+    response->earlier_crack =
+        duplicate(cracks, (size_t)response->n_earlier_crack, sizeof *cracks);
     response->weight_crack =
-        duplicate(run->engine->cracks(run, &count), (size_t)response->n_weight_crack,
-                  sizeof *response->weight_crack);
+        duplicate(cracks, (size_t)response->n_weight_crack, sizeof *cracks);
 }
 
 static void note_step(struct run *run)
@@ -235,7 +239,7 @@ enum status replay(const struct packing *packing, const struct load *load,
     }
     for (int k = 0; k < load->n_time; k++)
         response->n_unsettled += !response->settled[k];
-    if (!status && settings->weight) take_weight_cracks(&run);
+    if (!status) take_cracks_before(&run);
     if (!status && settings->keep_state) response->engine = run.engine->save(&run);
     run.engine->end(&run);
     free(run.force);
@@ -263,6 +267,7 @@ void response_free(struct response *response)
     free(response->loaded);
     free(response->reaction);
     free(response->lateral_tension);
+    free(response->earlier_crack);
     free(response->weight_crack);
     drainage_history_free(&response->drainage);
     free_arrays(response->engine.array, response->engine.count);

@@ -147,7 +147,9 @@ struct response {
     struct drainage_history drainage;     // NULL without capillarity
     struct array_list engine; // at the end, if it was to be kept; quasi-static: all
                               // loads up to there
-    int n_weight_crack;       // before drying, under the weight alone
+    int n_earlier_crack; // of the replays that this one goes on from, weight included
+    struct dem_crack *earlier_crack;
+    int n_weight_crack; // before drying, under the weight alone
     struct dem_crack *weight_crack;
     double weight_unbalanced_ratio; // when drying began; NAN: without weight
 };

@@ -10,6 +10,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "read_load.h"
+#include "write_response.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -186,20 +187,11 @@ void put_weight(struct artifact *artifact, const struct taken_weight *weight,
         artifact_put_number(artifact, "/summary/bond_number_body",
                             weight->numbers.body);
     if (weight->gravity == 0) return;
-    const int n = response->n_weight_crack;
-    int32_t *bond = NEW_ARRAY(int32_t, n);
-    uint8_t *mode = NEW_ARRAY(uint8_t, n);
-    for (int k = 0; k < n; k++) {
-        bond[k] = response->weight_crack[k].bond;
-        mode[k] = response->weight_crack[k].mode;
-    }
     artifact_put_number(artifact, "/summary/gravity", weight->gravity);
-    artifact_put_number(artifact, "/summary/weight_cracks", n);
+    artifact_put_number(artifact, "/summary/weight_cracks", response->n_weight_crack);
     if (!isnan(response->weight_unbalanced_ratio))
         artifact_put_number(artifact, "/summary/weight_unbalanced_ratio",
                             response->weight_unbalanced_ratio);
-    artifact_put(artifact, "/weight_cracks/bond", bond, n);
-    artifact_put(artifact, "/weight_cracks/mode", mode, n);
-    free(bond);
-    free(mode);
+    put_bonds_and_modes(artifact, "/weight_cracks", response->weight_crack,
+                        response->n_weight_crack);
 }

@@ -8,6 +8,7 @@
 // With n grains, b bonds, k rows of the load, s snapshots, c pairs:
 //     packing, /bonds/relative_strength (b), /particles/held (n)
 //     /cracks     bond, time, saturation, mode, position (n_crack)
+//     /earlier_cracks   bond, mode, of the replays that this one goes on from
 //     /history    time, saturation, unbalanced_ratio, cycles, cracks, settled,
 //                 reaction_force, reaction_moment (k); lateral_tension (k)
 //                 where grains shrink or pores drain
@@ -24,8 +25,27 @@
 #include "geometry/neighbours.h"
 #include "replay_checkpoint.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+void put_bonds_and_modes(struct artifact *artifact, const char *group,
+                         const struct dem_crack *crack, int n)
+{
+    int32_t *bond = NEW_ARRAY(int32_t, n);
+    uint8_t *mode = NEW_ARRAY(uint8_t, n);
+    char name[60];
+    for (int k = 0; k < n; k++) {
+        bond[k] = crack[k].bond;
+        mode[k] = crack[k].mode;
+    }
+    snprintf(name, sizeof name, "%s/bond", group);
+    artifact_put(artifact, name, bond, n);
+    snprintf(name, sizeof name, "%s/mode", group);
+    artifact_put(artifact, name, mode, n);
+    free(bond);
+    free(mode);
+}
 
 static void put_cracks(struct artifact *artifact, const struct load *load,
                        const struct response *response)
@@ -291,6 +311,9 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_packing(artifact, packing);
     put_settings(artifact, packing, settings);
     put_cracks(artifact, load, response);
+    if (settings->begin)
+        put_bonds_and_modes(artifact, "/earlier_cracks", response->earlier_crack,
+                            response->n_earlier_crack);
     put_history(artifact, load, response);
     put_drainage(artifact, load, &response->drainage);
     struct contact_list contacts = all_contacts(packing, response);

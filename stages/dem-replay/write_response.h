@@ -16,4 +16,8 @@ void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response);
 
+// Puts the N bonds CRACK and how they broke as the datasets bond and mode of GROUP.
+void put_bonds_and_modes(struct artifact *artifact, const char *group,
+                         const struct dem_crack *crack, int n);
+
 #endif

@@ -155,6 +155,27 @@ struct crack_view {
     double *state; // (n_contact)
 };
 
+// What had broken before, by earlier replays or the weight alone, is from the start.
+static void add_earlier_cracks(struct crack_view *view, const struct artifact *artifact,
+                               const char *bonds, const char *modes)
+{
+    if (!artifact_has_dataset(artifact, bonds)) return;
+    int n;
+    int32_t *bond = artifact_get(artifact, bonds, &n);
+    uint8_t *mode = artifact_get(artifact, modes, NULL);
+    const size_t size = (size_t)(view->n_crack + n);
+    view->crack_bond = reallocate(view->crack_bond, size, sizeof *view->crack_bond);
+    view->crack_mode = reallocate(view->crack_mode, size, sizeof *view->crack_mode);
+    view->crack_time = reallocate(view->crack_time, size, sizeof *view->crack_time);
+    for (int k = 0; k < n; k++, view->n_crack++) {
+        view->crack_bond[view->n_crack] = bond[k];
+        view->crack_mode[view->n_crack] = mode[k];
+        view->crack_time[view->n_crack] = -INFINITY;
+    }
+    free(bond);
+    free(mode);
+}
+
 // Reads what the view needs; the caller frees it with crack_view_free.
 static struct crack_view crack_view_of(const struct artifact *artifact)
 {
@@ -163,6 +184,8 @@ static struct crack_view crack_view_of(const struct artifact *artifact)
     view.crack_bond = artifact_get(artifact, "/cracks/bond", &view.n_crack);
     view.crack_mode = artifact_get(artifact, "/cracks/mode", NULL);
     view.crack_time = artifact_get(artifact, "/cracks/time", NULL);
+    add_earlier_cracks(&view, artifact, "/earlier_cracks/bond", "/earlier_cracks/mode");
+    add_earlier_cracks(&view, artifact, "/weight_cracks/bond", "/weight_cracks/mode");
     view.state = NEW_ARRAY(double, view.n_contact);
     return view;
 }

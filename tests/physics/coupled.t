@@ -10,6 +10,8 @@ import time
 
 import h5py
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 sys.path.insert(0, "tests")
 from tap import BIN, done, ok, run, scratch, sets
@@ -27,6 +29,29 @@ with scratch() as folder:
 
     def same(a, b, entries):
         return all(a[e].shape == b[e].shape and a[e][:].tobytes() == b[e][:].tobytes() for e in entries)
+
+    def goes_on(whole, early, late):
+        """What broke in the early part stays broken in what is counted and drawn of the late one."""
+        bond = [h5py.File(at(name))[entry][:].tolist()
+                for name, entry in ((early, "cracks/bond"), (late, "earlier_cracks/bond"))]
+        left = [json.loads(run("crackstats", at(name)))["each"][0]["fragments"] for name in (whole, early, late)]
+        run("inspect", "--vtk", at(whole), at(whole))
+        run("inspect", "--vtk", at(late), at(late))
+        drawn = [sum(np.array(crack_states(at(f"{name}-{frame:04}.vtu"))) > 0)
+                 for name, frame in ((whole, last_frame(whole)), (late, last_frame(late)))]
+        return (bond[0] and bond[0] == bond[1] and left[2]["before"] == left[1]["count"]
+                and all(left[2][k] == left[0][k] for k in ("count", "largest", "single"))
+                and drawn[0] == drawn[1] > 0,
+                f"{late}: what broke before stays broken", (len(bond[0]), left, drawn))
+
+    def last_frame(name):
+        return len(h5py.File(at(name))["snapshots/time"]) - 1
+
+    def crack_states(path):
+        reader = vtkXMLUnstructuredGridReader()
+        reader.SetFileName(path)
+        reader.Update()
+        return vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("crack"))
 
     def volumes(network):
         cylinders = np.pi * network["throats/radius"][:]**2 * network["throats/length"][:]
@@ -84,6 +109,7 @@ with scratch() as folder:
        and (late["snapshots/displacement"][-1] == whole["snapshots/displacement"][-1]).all()
        and (late["snapshots/bond_intact"][-1] == whole["snapshots/bond_intact"][-1]).all(),
        "a replay in two parts: the same bits", (len(early["cracks/bond"]), len(whole["cracks/bond"])))
+    ok(*goes_on("response", "response-early", "response-late"))
     # Equilibria go on too: parallel bonds, some of which break in either part.
     uneven = ["bond.strength.distribution=weibull", "bond.strength.modulus=2"]
     glue = ["engine=quasi-static", "bond.kind=parallel", "bond.normal_strength=1e6", "bond.shear_strength=1e6", *uneven]
@@ -97,6 +123,7 @@ with scratch() as folder:
        and (late["snapshots/displacement"][-1] == whole["snapshots/displacement"][-1]).all(),
        "equilibria in two parts: the same bits",
        (len(early["cracks/bond"]), len(late["cracks/bond"]), len(whole["cracks/bond"])))
+    ok(*goes_on("response-still", "early-still", "late-still"))
 
     # One that goes on, stopped and gone on with.
     uneven = ["keep_state=true", "bond.contact_strength=3e-8", *uneven]

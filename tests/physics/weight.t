@@ -10,6 +10,8 @@ import sys
 
 import h5py
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 sys.path.insert(0, "tests")
 from tap import BIN, done, ok, run, scratch, sets
@@ -104,6 +106,12 @@ with scratch() as folder:
                (dict(summary), said))
             last = response["snapshots/bond_intact"][-1]
             ok(last.sum() == n - 1 - cracks, f"{engine}: and are broken in all snapshots", last)
+    run("inspect", "--vtk", at("hung"), at("response"))
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(at("hung-0000.vtu"))
+    reader.Update()
+    drawn = vtk_to_numpy(reader.GetOutput().GetCellData().GetArray("crack"))
+    ok(sorted(drawn) == [0] * (n - 2) + [1], "inspect --vtk: drawn as broken in tension", drawn)
     counted = run("crackstats", at("response"))
     stats = json.loads(counted)
     ok(stats["cracks"]["total"] == 0 and stats["mean"]["fragments"]["before"] == 2
