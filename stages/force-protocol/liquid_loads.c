@@ -4,8 +4,9 @@
 //     load[LOAD_SUCTION]      = S suction                          Pa
 //     load[LOAD_CONTACT_LINE] = r sigma sin(theta) (its menisci)   N
 //     load[LOAD_EMPTINESS]    = 1 - S
-//     load[LOAD_WEIGHT]       = rho g S V                          N
-// with S the saturation of the throat, linear in time within a step of the drying.
+//     load[LOAD_WEIGHT]       = rho g (S V + (1 - S) V_r s)        N
+// with S the saturation of the throat, linear in time within a step of the drying, V_r
+// what it leaves in rings and s their saturation, below 1 only where S is 0.
 // The suction is uniform [K 5.3], of each cluster (the least entry pressure less rho g
 // z among its menisci), or interpolated from the pressure field of viscous liquid.
 // With K's uniform suction loads are continuous in time; clusters make them jump when
@@ -312,6 +313,13 @@ double liquid_loads_rings(const struct liquid_loads *liquid, int throat)
     return (before + liquid->share * (after - before)) / 2;
 }
 
+double liquid_loads_left(const struct liquid_loads *liquid, int throat)
+{
+    if (!liquid->ring_part) return 0;
+    return (1 - liquid_loads_filling(liquid, throat)) * liquid->ring_part[throat] *
+           liquid_loads_rings(liquid, throat);
+}
+
 void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[LOADS])
 {
     const double saturation = liquid_loads_filling(liquid, throat);
@@ -324,10 +332,12 @@ void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[
     load[LOAD_CONTACT_LINE] =
         holds_liquid(liquid, throat) ? line * count_menisci(liquid, throat) : 0;
     load[LOAD_EMPTINESS] = takes_part ? 1 - saturation : 0;
-    load[LOAD_WEIGHT] =
-        liquid->law.weight > 0 && saturation > 0
-            ? liquid->law.weight * saturation * throat_volume(liquid->network, throat)
-            : 0;
+    load[LOAD_WEIGHT] = 0;
+    if (!(liquid->law.weight > 0)) return;
+    if (saturation > 0)
+        load[LOAD_WEIGHT] =
+            liquid->law.weight * saturation * throat_volume(liquid->network, throat);
+    load[LOAD_WEIGHT] += liquid->law.weight * liquid_loads_left(liquid, throat);
 }
 
 // Before the first step rings are whole.
@@ -341,6 +351,7 @@ static void begin_rings(struct liquid_loads *liquid)
     apply_changes(changes, 0, liquid->rings_before);
     liquid->rings_after = duplicate(liquid->rings_before, (size_t)n, sizeof(double));
     if (!is_at_last_step(liquid)) apply_changes(changes, 1, liquid->rings_after);
+    liquid->ring_part = ring_parts(&liquid->record->rings, liquid->network);
 }
 
 struct liquid_loads liquid_loads_begin(const struct network *network,
@@ -371,6 +382,7 @@ void liquid_loads_free(struct liquid_loads *liquid)
     free(liquid->after);
     free(liquid->rings_before);
     free(liquid->rings_after);
+    free(liquid->ring_part);
     free(liquid->gas);
     free(liquid->suction);
     free(liquid->field);

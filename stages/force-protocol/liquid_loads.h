@@ -43,7 +43,7 @@ enum load {
     LOAD_SUCTION,      // of the liquid times saturation, Pa
     LOAD_CONTACT_LINE, // radius times sigma sin(theta) for each end in gas, N
     LOAD_EMPTINESS,    // 1 - saturation: rings grow with it
-    LOAD_WEIGHT,       // of the liquid, N
+    LOAD_WEIGHT,       // of the liquid and what it has left in rings, N
     LOADS
 };
 
@@ -57,10 +57,11 @@ struct liquid_loads {
     double share;           // of the way to the next step
     double *before, *after; // (n_throat) saturations at this step and the next
     double *rings_before, *rings_after; // (n_node) of the rings there; NULL: none
-    bool *gas;                          // (n_node) a throat there has emptied
-    double *suction;                    // (n_throat) Pa, now; NULL if uniform
-    double *field;                      // (n_snapshot * n_throat) Pa; NULL without
-    bool stale; // SUCTION is that of before a throat has emptied
+    double *ring_part; // (n_throat) m3, what it leaves in rings; NULL: none
+    bool *gas;         // (n_node) a throat there has emptied
+    double *suction;   // (n_throat) Pa, now; NULL if uniform
+    double *field;     // (n_snapshot * n_throat) Pa; NULL without
+    bool stale;        // SUCTION is that of before a throat has emptied
 };
 
 // At the first step. Keeps NETWORK and RECORD, which must live as long. The caller
@@ -88,6 +89,9 @@ void liquid_loads_at(const struct liquid_loads *liquid, int throat, double load[
 // nodes, which must be known.
 double liquid_loads_filling(const struct liquid_loads *liquid, int throat);
 double liquid_loads_rings(const struct liquid_loads *liquid, int throat);
+
+// What THROAT has left in rings and is there now, m3; 0 where rings are not known.
+double liquid_loads_left(const struct liquid_loads *liquid, int throat);
 
 // Interpolation error of SUCTION_FIELD: the mean difference between the suction of a
 // wet throat in a snapshot and that interpolated between the snapshots before and

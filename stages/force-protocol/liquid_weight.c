@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A throat of volume V and saturation S holds m = rho S V of liquid. Grain i, whose
+// A throat of volume V and saturation S holds m = rho S V of liquid, and the rings that
+// it has left count with it (liquid_loads_left). Grain i, whose
 // cell has the void V_i of it, carries (V_i / sum V) m g. The suction leaves the grains
 // around each throat in balance, whatever it is and wherever it changes with height, so
 // the sum over all grains is the weight of all the liquid: pressure only hands it on.
@@ -61,15 +62,17 @@ struct patches find_liquid_shares(struct sectors *sectors)
 
 // ---- masses -------------------------------------------------------------------------
 
-double liquid_density(const struct network *network, const struct drying_record *record,
+double liquid_density(const struct network *network, const struct liquid_record *record,
                       double mass)
 {
-    double *saturation = full_saturations(network), volume = 0;
-    apply_changes(record, 0, saturation);
+    struct liquid_loads liquid =
+        liquid_loads_begin(network, record, &(struct suction_law){0});
+    double volume = 0;
     for (int t = 0; t < network->n_throat; t++)
         if (network->throat_kind[t] == THROAT_NETWORK)
-            volume += saturation[t] * throat_volume(network, t);
-    free(saturation);
+            volume += liquid_loads_filling(&liquid, t) * throat_volume(network, t) +
+                      liquid_loads_left(&liquid, t);
+    liquid_loads_free(&liquid);
     return volume > 0 ? mass / volume : 0;
 }
 

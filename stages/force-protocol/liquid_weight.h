@@ -12,8 +12,9 @@
 // in layers and where there is no void. The caller frees it.
 struct patches find_liquid_shares(struct sectors *sectors);
 
-// Liquid per volume of full throats, kg/m3, from the MASS with which the drying began.
-double liquid_density(const struct network *network, const struct drying_record *record,
+// Of the liquid, kg/m3, from the MASS with which the drying began and the volume of
+// throats and rings that it filled then.
+double liquid_density(const struct network *network, const struct liquid_record *record,
                       double mass);
 
 // MASS (n_particle) becomes that of the liquid around each grain now, kg, by its

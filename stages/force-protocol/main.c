@@ -214,7 +214,7 @@ static void find_weight(const struct network *network,
     if (check_gravity(network, gravity, &reason))
         die(STATUS_BAD_DATA, "force-protocol.%s", reason.text);
     const double mass = artifact_get_number(input, "/summary/liquid_mass");
-    law->weight = gravity * liquid_density(network, &record->drying, mass);
+    law->weight = gravity * liquid_density(network, record, mass);
 }
 
 // Balancing corrects the suction's patches alone: contact lines and weights have no
@@ -501,7 +501,8 @@ int main(int argc, char **argv)
 
     struct liquid_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD,
-                    parameters.rings == RING_DRYING);
+                    parameters.rings == RING_DRYING ||
+                        (parameters.gravity > 0 && artifact_has_rings(input)));
     check_end(&record.drying, (double)parameters.steps, input->path);
     if (parameters.rings == RING_DRYING)
         status = drying_rings_init(&network, &record.rings, parameters.surface_tension,

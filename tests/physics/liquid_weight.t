@@ -98,6 +98,21 @@ with scratch() as folder:
     wrong = abs(got / wanted - 1)[inner].max()
     ok(inner.sum() > 5 and wrong < 1e-10, "a grain carries the liquid in its own cell", (inner.sum(), wrong))
 
+    # Rings that throats have left weigh too, until they have dried.
+    network("ringed", settled)
+    for rings, law, start in (("isolated", "inviscid", 0.3), ("joined", "inviscid", 1), ("isolated", "immobile", 0.3)):
+        drying = dry("ringed", f"liquid={law}", f"gravity={G}", f"rings={rings}", f"start_saturation={start}")
+        weighed = forces("steps=40")
+        history = drying["history"]
+        share = np.interp(weighed["time"][:], history["time"][:], history["saturation"][:])
+        first = drying["summary"].attrs["liquid_mass"]
+        mass = first * share / history["saturation"][0]
+        wrong = abs(weighed["liquid_mass"][:].sum(axis=1) - mass).max() / first
+        weight = abs(weighed["force"][:].sum(axis=1)[:, 2] + mass * G).max() / (first * G)
+        ok(wrong < 1e-12 and weight < 1e-9 and history["ring_saturation"][:].max() > 1e-3,
+           f"{rings} rings, {law}, full to {start}: they weigh as well",
+           (wrong, weight, history["ring_saturation"][:].max()))
+
     # ---- Archimedes ---------------------------------------------------------------------
     # The cells of a cubic lattice end in throats on all sides: still liquid presses on a full
     # one exactly as on a block of its volume.

@@ -6,7 +6,18 @@
 // parts, and count with it.
 #include "network/ring_record.h"
 
+#include "basics/memory.h"
+
 #include <stdlib.h>
+
+double *ring_parts(const struct ring_record *rings, const struct network *network)
+{
+    double *part = NEW_ARRAY(double, network->n_throat);
+    for (int r = 0; r < rings->n; r++)
+        for (int64_t k = rings->offset[r]; k < rings->offset[r + 1]; k++)
+            part[rings->throat[k]] += rings->volume[k];
+    return part;
+}
 
 void ring_record_free(struct ring_record *rings)
 {

@@ -17,6 +17,10 @@ struct ring_record {
     struct drying_record changes; // of nodes, in place of throats; without times
 };
 
+// (n_throat of NETWORK) What each throat leaves in its parts of rings, m3, while these
+// are whole. The caller frees it.
+double *ring_parts(const struct ring_record *rings, const struct network *network);
+
 // Frees what it owns and empties it.
 void ring_record_free(struct ring_record *rings);
 
