@@ -68,6 +68,8 @@ struct drying_conditions {
     double start_saturation;
     bool start_trapping; // liquid that gas then cuts off from the walls opposite stays
     const double *start; // (n_throat) from 0 to 1; NULL: by START_SATURATION
+    const double *start_rings; // (n_node) with START and rings: of the rings there, 1
+                               // beside liquid; NULL: whole
     double stop_saturation; // where it ends, from 0 (dry) to below what it begins with
     // Largest sum of the errors in what the wet nodes evaporate, relative to the rate.
     // From 1e-6 on, links on large fronts are stored as floats. 0: exact.

@@ -75,9 +75,10 @@ static bool holds_liquid(const struct network *network, const double *saturation
 
 // Throat by throat, from a drying or a network that says how full they are; else NULL.
 // The caller frees it. A drying has no saturations of its own at any moment but its
-// changes: they are replayed down to SATURATION.
+// changes: they are replayed down to SATURATION. *RINGS becomes what the rings hold
+// then at each node, where it has any.
 static double *read_start(const struct artifact *input, const struct network *network,
-                          double saturation)
+                          double saturation, double **rings)
 {
     if (artifact_has_dataset(input, "/throats/saturation"))
         return artifact_get(input, "/throats/saturation", NULL);
@@ -94,6 +95,11 @@ static double *read_start(const struct artifact *input, const struct network *ne
             "%s: /changes/saturation: no throat holds liquid any more at "
             "dry.start_saturation %g",
             input_name(input->path), saturation);
+    if (artifact_has_rings(input)) {
+        struct ring_record held = artifact_get_rings(input);
+        *rings = recorded_rings(network, &record, &held.changes, saturation);
+        ring_record_free(&held);
+    }
     drying_record_free(&record);
     return start;
 }
@@ -235,8 +241,11 @@ int main(int argc, char **argv)
     if (parameters.imposed_empty || parameters.shut)
         parameters.enclosed =
             empty_enclosed(&network, parameters.open_walls, parameters.conditions.feet);
-    double *start = read_start(input, &network, parameters.conditions.start_saturation);
+    double *rings = NULL;
+    double *start =
+        read_start(input, &network, parameters.conditions.start_saturation, &rings);
     parameters.conditions.start = start;
+    parameters.conditions.start_rings = rings;
     json_t *digest = one_input(input);
     struct checkpoint checkpoint;
     checkpoint_begin(&checkpoint, &invocation, digest);
@@ -248,6 +257,7 @@ int main(int argc, char **argv)
     json_decref(digest);
     drying_history_free(&history);
     free(start);
+    free(rings);
     free(parameters.even_snapshots);
     network_free(&network);
     artifact_close(input);

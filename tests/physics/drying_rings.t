@@ -110,6 +110,23 @@ with dry(network(lattice(R)), "rings=joined", *WATER) as file:
     ok(np.allclose(rate[fed], rate[0], rtol=1e-12) and abs(first * rate[0] / lost - 1) < 1e-12,
        "rings at all nodes keep the first rate until the last throat has emptied", (rate.min(), first * rate[0] / lost))
 
+# ---- in two parts -------------------------------------------------------------------------
+
+for settings in (["rings=isolated", "liquid=immobile"], ["rings=isolated"], ["rings=joined"], ["rings=films"]):
+    with dry(net, *settings, name="whole") as whole:
+        level = 1.5 * whole["history/ring_saturation"][:].max()
+        before, left = whole["history/time"][:], whole["history/saturation"][:]
+    cut = np.interp(-level, -left, before)
+    with dry(at("whole"), *settings, f"start_saturation={level}") as late:
+        time, saturation = late["history/time"][:], late["history/saturation"][:]
+        dried = late["ring_changes/offset"][1]
+        moments = np.linspace(cut, before[-1], 200)
+        wrong = abs(np.interp(moments, before, left) - np.interp(moments - cut, time, saturation)).max()
+        ok(abs(saturation[0] / level - 1) < 1e-12 and wrong < 1e-9 and abs((cut + time[-1]) / before[-1] - 1) < 1e-9
+           and (dried > 0 or "rings=isolated" not in settings) and max(books(late)[:2]) < 1e-12,
+           f"{settings}: what rings have lost stays lost where the drying goes on",
+           (saturation[0] / level - 1, wrong, dried, books(late)[:2]))
+
 # ---- none ---------------------------------------------------------------------------------
 
 bare = network(lattice(0.8 * R))

@@ -205,7 +205,10 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
         .dirty = NEW_ARRAY(int, n),
         .is_dirty = NEW_ARRAY(bool, n)};
     for (int t = 0; t < n; t++) {
-        times.saturation[t] = t < n_throat ? occupancy_saturation(occupancy, t) : 1;
+        times.saturation[t] = t < n_throat ? occupancy_saturation(occupancy, t)
+                              : occupancy->rings_at_start
+                                  ? occupancy->rings_at_start[t - n_throat]
+                                  : 1;
         times.timer[t] = -1;
     }
     for (size_t k = 0; k < 2 * (size_t)n; k++)

@@ -36,7 +36,8 @@ struct occupancy {
     bool *gas;          // (n_node)
     int *liquid_beside; // (n_node) throats with liquid at the node
     bool *has_rings;    // (n_node) rings there hold liquid; NULL without rings
-    int *feeder;        // (n_node) with films: cluster that feeds rings there, -1: none
+    const double *rings_at_start; // (n_node) their saturations; kept; NULL: 1
+    int *feeder; // (n_node) with films: cluster that feeds rings there, -1: none
     int n_wet;
     int *wet;          // (n_wet) nodes with liquid on one side and gas on the other
     int *wet_place;    // (n_node) in wet, -1 where not wet

@@ -101,10 +101,13 @@ static enum status start(struct run *run, struct reason *reason)
     if (!conditions->start)
         status = invaded_saturations(occupancy, conditions->start_saturation,
                                      conditions->start_trapping, invaded, reason);
-    if (!status) start_from(occupancy, left);
+    const double *rings = run->conditions->rings ? conditions->start_rings : NULL;
+    if (!status) start_from(occupancy, left, rings);
     for (int t = 0; !status && t < n; t++)
         if (occupancy->volume[t] > 0 && left[t] < 1)
             recorder_add_change(&run->recorder, t, left[t]);
+    for (int i = 0; !status && rings && i < occupancy->network->n_node; i++)
+        if (rings[i] < 1) recorder_add_change(&run->recorder, n + i, rings[i]);
     free(invaded);
     return status;
 }

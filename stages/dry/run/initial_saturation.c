@@ -82,34 +82,56 @@ enum status invaded_saturations(const struct occupancy *occupancy, double satura
 
 // --- from a record -----------------------------------------------------------------
 
-double *recorded_saturations(const struct network *network,
-                             const struct drying_record *record, double saturation)
+// Brings NOW (n) from before the first step of CHANGES to the moment at which RECORD,
+// of the same steps, has SATURATION.
+static void follow(const struct drying_record *record,
+                   const struct drying_record *changes, double saturation, double *now,
+                   size_t n)
 {
-    const size_t n = (size_t)network->n_throat;
-    double *before = NEW_ARRAY(double, n), *now = full_saturations(network);
-    apply_changes(record, 0, now);
+    double *before = NEW_ARRAY(double, n);
+    apply_changes(changes, 0, now);
     int step = 0;
     while (record->saturation[step] > saturation && step < record->n_step - 1) {
         memcpy(before, now, n * sizeof *now);
-        apply_changes(record, ++step, now);
+        apply_changes(changes, ++step, now);
     }
     if (step > 0) {
         const double rest = (saturation - record->saturation[step]) /
                             (record->saturation[step - 1] - record->saturation[step]);
-        for (size_t t = 0; t < n; t++)
-            now[t] += fmin(1, fmax(0, rest)) * (before[t] - now[t]);
+        for (size_t k = 0; k < n; k++)
+            now[k] += fmin(1, fmax(0, rest)) * (before[k] - now[k]);
     }
     free(before);
+}
+
+double *recorded_saturations(const struct network *network,
+                             const struct drying_record *record, double saturation)
+{
+    double *now = full_saturations(network);
+    follow(record, record, saturation, now, (size_t)network->n_throat);
+    return now;
+}
+
+double *recorded_rings(const struct network *network,
+                       const struct drying_record *record,
+                       const struct drying_record *changes, double saturation)
+{
+    double *now = NEW_ARRAY(double, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        now[i] = 1;
+    follow(record, changes, saturation, now, (size_t)network->n_node);
     return now;
 }
 
 // --- either ------------------------------------------------------------------------
 
-void start_from(struct occupancy *occupancy, const double *start)
+void start_from(struct occupancy *occupancy, const double *start, const double *rings)
 {
+    const int n_node = occupancy->rings ? occupancy->network->n_node : 0;
     struct compensated total = {0};
-    for (int i = 0; occupancy->rings && i < occupancy->network->n_node; i++)
-        compensated_add(&total, occupancy->rings->at_node[i]);
+    for (int i = 0; i < n_node; i++)
+        compensated_add(&total, occupancy->rings->at_node[i] * (rings ? rings[i] : 1));
+    occupancy->rings_at_start = rings;
     for (int t = 0; t < occupancy->network->n_throat; t++) {
         if (!(occupancy->volume[t] > 0)) continue;
         if (start[t] == 0) {
@@ -119,6 +141,9 @@ void start_from(struct occupancy *occupancy, const double *start)
         occupancy->liquid[t].value = start[t] * occupancy->volume[t];
         compensated_add(&total, occupancy->liquid[t].value);
     }
+    for (int i = 0; rings && i < n_node; i++)
+        if (rings[i] == 0 && occupancy->has_rings[i] && !occupancy->liquid_beside[i])
+            occupancy_dry_rings(occupancy, i);
     occupancy->total_liquid = total;
     occupancy->initial_liquid = compensated_value(total);
 }

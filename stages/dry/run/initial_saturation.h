@@ -22,8 +22,14 @@ enum status invaded_saturations(const struct occupancy *occupancy, double satura
 double *recorded_saturations(const struct network *network,
                              const struct drying_record *record, double saturation);
 
+// Likewise of the rings at each node (n_node), by CHANGES of the same steps.
+double *recorded_rings(const struct network *network,
+                       const struct drying_record *record,
+                       const struct drying_record *changes, double saturation);
+
 // Removes liquid from full OCCUPANCY until its throats have the saturations START
-// (n_throat, each from 0 to 1).
-void start_from(struct occupancy *occupancy, const double *start);
+// (n_throat, each from 0 to 1), and the rings beside empty ones RINGS (n_node,
+// likewise; kept; NULL: 1).
+void start_from(struct occupancy *occupancy, const double *start, const double *rings);
 
 #endif
