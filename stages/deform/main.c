@@ -391,6 +391,17 @@ static void write_packing(const struct scene *scene)
                     "them\n");
 }
 
+// The rings of moved grains are others, and a network has no place for what they hold.
+static void refuse_rings(const struct artifact *input)
+{
+    static const char name[] = "/summary/ring_volume";
+    if (artifact_has_number(input, name) && artifact_get_number(input, name) > 0)
+        die(STATUS_BAD_DATA,
+            "%s: /rings: the liquid in rings cannot go along with moved grains: dry "
+            "with rings=none",
+            input_name(input->path));
+}
+
 int main(int argc, char **argv)
 {
     struct deform_parameters parameters;
@@ -402,6 +413,7 @@ int main(int argc, char **argv)
                           .invocation = &invocation,
                           .input = open_network(invocation.inputs[0]),
                           .response = artifact_open(invocation.inputs[1], "response")};
+    if (parameters.write != WRITE_PACKING) refuse_rings(scene.input);
     scene.before = artifact_get_periodic_network(scene.input);
     scene.after = artifact_get_periodic_network(scene.input);
     take_places(scene.response, &scene.after.packing);

@@ -112,6 +112,7 @@ with dry(network(lattice(R)), "rings=joined", *WATER) as file:
 
 # ---- in two parts -------------------------------------------------------------------------
 
+net = network(at("packing"))
 for settings in (["rings=isolated", "liquid=immobile"], ["rings=isolated"], ["rings=joined"], ["rings=films"]):
     with dry(net, *settings, name="whole") as whole:
         level = 1.5 * whole["history/ring_saturation"][:].max()
@@ -146,4 +147,15 @@ for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is
 refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=isolated", net, "-o", at("no")],
                          capture_output=True, text=True, check=False)
 ok(refused.returncode == 65 and "rings: must be none where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
+
+# What rings hold cannot go along with grains that move; without rings the same grains do.
+run("dem-replay", "-q", *sets("engine=explicit", "bond.by=distance", "shrinkage.strain=1e-9", "shrinkage.steps=1",
+                              "cycles=1", "most_cycles=1", "support=free"), at("packing"), "-o", at("moved"))
+net = network(at("packing"))
+for rings, status in ("isolated", 65), ("none", 0):
+    dry(net, f"rings={rings}", "stop_saturation=0.3", name="half").close()
+    tried = subprocess.run([f"{BIN}/deform", "-s", "on_change=keep", at("half"), at("moved"), "-o", at("after")],
+                           capture_output=True, text=True, check=False)
+    ok(tried.returncode == status and ("/rings: the liquid in rings cannot go along" in tried.stderr) == (status == 65),
+       f"deform, rings={rings}: status {status}", tried.stderr)
 done()
