@@ -21,6 +21,18 @@ static bool lies_within(struct vector x, const double lower[3], const double upp
     return true;
 }
 
+static enum status check_walls(const struct packing *packing, unsigned walls,
+                               struct reason *reason)
+{
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        if (walls >> wall & 1 && packing->periodic[wall / 2])
+            return refuse(reason, STATUS_BAD_DATA,
+                          "held.walls: the box is periodic along %c and has no wall "
+                          "%c%c (name others, or none and held.lower, held.upper)",
+                          'x' + wall / 2, wall % 2 ? '+' : '-', 'x' + wall / 2);
+    return STATUS_OK;
+}
+
 static enum status check_region(const struct fixed_grains *held, struct reason *reason)
 {
     if (isnan(held->lower[0]) != isnan(held->upper[0]))
@@ -52,7 +64,8 @@ enum status find_fixed_grains(const struct packing *packing,
                               const struct fixed_grains *held, uint8_t **is_held,
                               struct reason *reason)
 {
-    enum status status = check_region(held, reason);
+    enum status status = check_walls(packing, held->walls, reason);
+    if (!status) status = check_region(held, reason);
     if (!status) status = check_grains(packing, held, reason);
     if (status) return status;
     *is_held = NEW_ARRAY(uint8_t, packing->n_particle);

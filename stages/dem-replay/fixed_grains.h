@@ -16,8 +16,9 @@ struct fixed_grains {
 };
 
 // *IS_HELD (n_particle) becomes 1 for each fixed grain and 0 elsewhere; the caller
-// frees it. STATUS_BAD_DATA, with the key in the reason, and nothing allocated: a grain
-// that does not exist, only one corner of a region, or an upper corner below the lower.
+// frees it. STATUS_BAD_DATA, with the key in the reason, and nothing allocated: a wall
+// where the box is periodic, a grain that does not exist, only one corner of a region,
+// or an upper corner below the lower.
 // Touching is to 1e-6 of the radius, or beyond the wall. Nothing given: no grain is
 // held.
 enum status find_fixed_grains(const struct packing *packing,

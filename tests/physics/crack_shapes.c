@@ -294,8 +294,9 @@ static void test_three_grains_have_no_strain(void **state)
     run_free(&run);
 }
 
-// The planes 4, 5, 0, 1 of six, whole across the side of the box: it shrinks as it would
-// within the box. A body around the box keeps its length, wherever the box begins.
+// The planes 4, 5, 0, 1 of six, whole across the side of the box: it shrinks as it
+// would within the box. A body around the box keeps its length, wherever the box
+// begins.
 static void test_fragments_across_a_side_are_whole(void **state)
 {
     (void)state;

@@ -112,6 +112,14 @@ with scratch() as folder:
         status, message = refused(*settings)
         ok(status == 65 and says in message, f"refused: {says}", message)
 
+    run("pack", *sets("method=cubic", "counts=[3,3,3]", "radius=1e-6", "periodic=[true,false,false]"), "-o", at("periodic"))
+    for walls, status in ('["-x"]', 65), ('["-z","+x"]', 65), ('["-y","-z"]', 0):
+        tried = subprocess.run([f"{BIN}/dem-replay", *sets("engine=explicit", "shrinkage.strain=1e-4", "shrinkage.steps=1",
+                                "density=2500", "normal_stiffness=10", "shear_stiffness=5", "cycles=1", "held.walls=" + walls),
+                                at("periodic"), "-o", at("response")], capture_output=True, text=True)
+        ok(tried.returncode == status and ("periodic along x" in tried.stderr) == (status != 0),
+           f"held.walls={walls} in a box that is periodic along x", tried.stderr)
+
     # ---- what does not come to rest: with this friction a load takes more than one step in time
     for most in 1, 40:
         words_of_it = sets(*HELD, "engine=quasi-static", "friction=2", f"quasi_static.most_iterations={most}")
