@@ -163,7 +163,7 @@ static void add_earlier_cracks(struct crack_view *view, const struct artifact *a
     int n;
     int32_t *bond = artifact_get(artifact, bonds, &n);
     uint8_t *mode = artifact_get(artifact, modes, NULL);
-    const size_t size = (size_t)(view->n_crack + n);
+    const size_t size = (size_t)view->n_crack + (size_t)n;
     view->crack_bond = reallocate(view->crack_bond, size, sizeof *view->crack_bond);
     view->crack_mode = reallocate(view->crack_mode, size, sizeof *view->crack_mode);
     view->crack_time = reallocate(view->crack_time, size, sizeof *view->crack_time);
