@@ -54,7 +54,8 @@ static void read_before(struct run *run, const struct artifact *response,
     if (!artifact_has_dataset(response, dataset)) return;
     int n;
     int32_t *bond = artifact_get(response, dataset, &n);
-    run->before = reallocate(run->before, (size_t)(run->n_before + n), sizeof *bond);
+    run->before =
+        reallocate(run->before, (size_t)run->n_before + (size_t)n, sizeof *bond);
     for (int k = 0; k < n; k++)
         run->before[run->n_before++] = bond[k];
     free(bond);

@@ -104,12 +104,12 @@ static void link_films(struct film_links *links)
         const int n = ends_at(occupancy, network->throat_nodes[t][0], a);
         const int m = ends_at(occupancy, network->throat_nodes[t][1], b);
         const double length = network->throat_length[t] / occupancy->length;
+        const double conductance = occupancy->film_law->conductance / length;
+        const double depth = film_depth(occupancy, t);
         for (int k = 0; k < n; k++)
             for (int l = 0; l < m; l++)
                 add_link(links, a[k].place, b[l].place,
-                         occupancy->film_law->conductance / length * a[k].weight *
-                             b[l].weight,
-                         film_depth(occupancy, t));
+                         conductance * a[k].weight * b[l].weight, depth);
     }
     free(a);
     free(b);

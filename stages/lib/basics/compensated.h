@@ -7,7 +7,7 @@
 //
 // Use one for a sum of many terms that is read on the way (time, evaporated mass, the
 // angle of a group), and for a number whose small differences matter (pressures of
-// pores that are nearly equal). A residual is a double: each time it is found anew.
+// pores that are nearly equal). A residual can be a double: it is computed anew.
 // A sum takes two numbers, and about four operations more for each term. Threads must
 // not share one.
 #ifndef CRAQUELURE_COMPENSATED_H
