@@ -16,6 +16,8 @@ void bond_grains(struct packing *packing, enum bonds_by by, double gap)
 {
     if (by == BONDS_BY_PACKING) return;
     packing->n_bond = 0;
+    free(packing->bond_strength);
+    packing->bond_strength = NULL;
     if (by == BONDS_BY_NONE) return;
     free(packing->bond);
     packing->bond = neighbour_pairs(packing, by == BONDS_BY_DISTANCE ? gap : ROUNDING,

@@ -34,12 +34,15 @@ struct strength_scatter {
 // bonds only add to them.
 double *draw_strengths(const struct strength_scatter *scatter, int n);
 
-// The strengths (n_bond) of the bonds of PACKING over the mean, drawn in the order of
-// the places of their middles, from above, then along x, then y: so they do not depend
-// on how grains are numbered. Places that differ by less than about 1e-9 of the extent
-// of the grains count as equal; of bonds that cross in the middle the steeper one comes
-// first. Ownership as draw_strengths.
+// The strengths (n_bond) of the bonds of PACKING over the mean: its own, times those
+// drawn in the order of the places of their middles, from above, then along x, then y:
+// so they do not depend on how grains are numbered. Places that differ by less than
+// about 1e-9 of the extent of the grains count as equal; of bonds that cross in the
+// middle the steeper one comes first. Ownership as draw_strengths.
 double *bond_strengths(const struct strength_scatter *scatter,
                        const struct packing *packing);
+
+// N times 1, which the caller frees.
+double *equal_strengths(int n);
 
 #endif

@@ -91,31 +91,40 @@ static void strengthen_substrate(double factor, const struct packing *packing,
                                  struct replay_settings *settings)
 {
     if (factor == 1) return;
-    const int n = packing->n_bond;
     double *strength = settings->relative_strength;
-    if (!strength) {
-        strength = settings->relative_strength = NEW_ARRAY(double, n);
-        for (int b = 0; b < n; b++)
-            strength[b] = 1;
-    }
-    for (int b = 0; b < n; b++) {
+    if (!strength)
+        strength = settings->relative_strength = equal_strengths(packing->n_bond);
+    for (int b = 0; b < packing->n_bond; b++) {
         const int32_t *end = packing->bond[b];
         if (settings->held[end[0]] != settings->held[end[1]]) strength[b] *= factor;
     }
 }
 
+// Drawn, times those of the packing, times FACTOR at the substrate. The bonds of an
+// EARLIER replay keep what they had in it.
+static void choose_strengths(const struct replay_parameters *parameters,
+                             const struct packing *packing, bool earlier,
+                             struct replay_settings *settings)
+{
+    if (earlier && packing->bond_strength) {
+        settings->relative_strength = copy_bond_strengths(packing);
+        return;
+    }
+    struct strength_scatter scatter = parameters->scatter;
+    scatter.law = (enum strength_law)parameters->strength_law;
+    settings->relative_strength = bond_strengths(&scatter, packing);
+    strengthen_substrate(parameters->substrate_strength, packing, settings);
+}
+
 // The caller frees what it gives to SETTINGS. Grains are held by PARAMETERS only with
 // support=fixed; otherwise the list is empty.
 static void choose_grains(const struct replay_parameters *parameters,
-                          struct packing *packing, struct replay_settings *settings,
-                          bool quiet)
+                          struct packing *packing, bool earlier,
+                          struct replay_settings *settings, bool quiet)
 {
-    struct strength_scatter scatter = parameters->scatter;
-    scatter.law = (enum strength_law)parameters->strength_law;
     bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
     choose_engine(parameters, packing, settings);
     check_bonds(parameters, packing);
-    settings->relative_strength = bond_strengths(&scatter, packing);
     struct fixed_grains held = parameters->held;
     if (settings->support != SUPPORT_FIXED)
         held =
@@ -124,7 +133,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     const enum status status =
         find_fixed_grains(packing, &held, &settings->held, &reason);
     if (status) die(status, "dem-replay.%s", reason.text);
-    strengthen_substrate(parameters->substrate_strength, packing, settings);
+    choose_strengths(parameters, packing, earlier, settings);
     if (settings->support != SUPPORT_FIXED || packing->n_particle == 0) return;
     const bool one_moves = memchr(settings->held, 0, (size_t)packing->n_particle);
     if (!one_moves && !quiet) report("all grains are held, so that none moves");
@@ -380,7 +389,7 @@ int main(int argc, char **argv)
     struct array_list engine = {NULL, 0};
     struct artifact *earlier = open_earlier(&invocation, &packing, &engine);
     settings->begin = earlier ? &engine : NULL;
-    choose_grains(&parameters, &packing, settings, invocation.quiet);
+    choose_grains(&parameters, &packing, earlier, settings, invocation.quiet);
     settings->shrinkage.held = settings->held;
     struct taken_weight weight = take_weight(is_packing(input) ? NULL : input,
                                              &parameters, &packing, &load, settings);

@@ -113,12 +113,17 @@ static int compare_places(const void *a, const void *b)
     return (p->bond > q->bond) - (p->bond < q->bond);
 }
 
-double *bond_strengths(const struct strength_scatter *scatter,
-                       const struct packing *packing)
+double *equal_strengths(int n)
 {
-    const int n = packing->n_bond;
-    double *drawn = draw_strengths(scatter, n);
-    if (!drawn) return NULL;
+    double *strength = NEW_ARRAY(double, n);
+    for (int b = 0; b < n; b++)
+        strength[b] = 1;
+    return strength;
+}
+
+// N strengths DRAWN, to the bonds of PACKING.
+static double *give_by_place(const struct packing *packing, const double *drawn, int n)
+{
     const struct ruler ruler = ruler_init(packing);
     struct placed_bond *placed = NEW_ARRAY(struct placed_bond, n);
     for (int b = 0; b < n; b++)
@@ -128,6 +133,19 @@ double *bond_strengths(const struct strength_scatter *scatter,
     for (int k = 0; k < n; k++)
         strength[placed[k].bond] = drawn[k];
     free(placed);
+    return strength;
+}
+
+double *bond_strengths(const struct strength_scatter *scatter,
+                       const struct packing *packing)
+{
+    const int n = packing->n_bond;
+    const double *own = packing->bond_strength;
+    double *drawn = draw_strengths(scatter, n);
+    if (!drawn) return copy_bond_strengths(packing);
+    double *strength = give_by_place(packing, drawn, n);
+    for (int b = 0; own && b < n; b++)
+        strength[b] *= own[b];
     free(drawn);
     return strength;
 }

@@ -21,6 +21,7 @@
 #include "write_response.h"
 
 #include "basics/memory.h"
+#include "bonds.h"
 #include "geometry/fragments.h"
 #include "geometry/neighbours.h"
 #include "replay_checkpoint.h"
@@ -111,16 +112,17 @@ static void put_drainage(struct artifact *artifact, const struct load *load,
     artifact_put(artifact, "/history/distorted_pores", drainage->distorted, n);
 }
 
-static void put_settings(struct artifact *artifact, const struct packing *packing,
-                         const struct replay_settings *settings)
+// With the strengths of its bonds in this replay.
+static void put_replayed_packing(struct artifact *artifact,
+                                 const struct packing *packing,
+                                 const struct replay_settings *settings)
 {
-    const int n = packing->n_bond;
-    double *relative = NEW_ARRAY(double, n);
-    for (int b = 0; b < n; b++)
-        relative[b] = settings->relative_strength ? settings->relative_strength[b] : 1;
-    artifact_put(artifact, "/bonds/relative_strength", relative, n);
+    double *relative = settings->relative_strength;
+    struct packing replayed = *packing;
+    replayed.bond_strength = relative ? relative : equal_strengths(packing->n_bond);
+    artifact_put_packing(artifact, &replayed);
     artifact_put(artifact, "/particles/held", settings->held, packing->n_particle);
-    free(relative);
+    if (!relative) free(replayed.bond_strength);
 }
 
 // ---- contacts of all snapshots ------------------------------------------------------
@@ -308,8 +310,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
                   const struct load *load, const struct replay_settings *settings,
                   const struct response *response)
 {
-    artifact_put_packing(artifact, packing);
-    put_settings(artifact, packing, settings);
+    put_replayed_packing(artifact, packing, settings);
     put_cracks(artifact, load, response);
     if (settings->begin)
         put_bonds_and_modes(artifact, "/earlier_cracks", response->earlier_crack,

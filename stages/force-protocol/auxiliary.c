@@ -24,6 +24,7 @@ static void copy_bonds(const struct packing *from, const int32_t *number,
         const int32_t first = number[from->bond[b][0]];
         const int32_t second = number[from->bond[b][1]];
         if (first < 0 || second < 0) continue;
+        if (to->bond_strength) to->bond_strength[to->n_bond] = from->bond_strength[b];
         to->bond[to->n_bond][0] = first;
         to->bond[to->n_bond++][1] = second;
     }
@@ -38,6 +39,7 @@ struct packing without_auxiliary(const struct packing *packing)
     kept.position = NEW_ARRAY(struct vector, kept.n_particle);
     kept.radius = NEW_ARRAY(double, kept.n_particle);
     kept.bond = allocate((size_t)packing->n_bond, sizeof *kept.bond);
+    if (packing->bond_strength) kept.bond_strength = NEW_ARRAY(double, packing->n_bond);
     copy_without_auxiliary(packing, packing->position, sizeof *kept.position,
                            kept.position);
     copy_without_auxiliary(packing, packing->radius, sizeof *kept.radius, kept.radius);

@@ -285,14 +285,19 @@ static void read_liquid(const struct simulate_parameters *parameters,
 
 // A contact bond has one strength, in tension and in shear [K 4.2].
 static void read_bonds(const struct simulate_parameters *parameters,
-                       struct dem_setup *setup)
+                       const struct packing *packing, struct scene *scene)
 {
-    setup->bond = parameters->bond;
-    setup->bond.kind =
+    struct dem_bond_material *bond = &scene->setup.bond;
+    *bond = parameters->bond;
+    bond->kind =
         parameters->bond_kind == BOND_CONTACT ? DEM_CONTACT_BOND : DEM_PARALLEL_BOND;
-    if (parameters->bond_kind != BOND_CONTACT) return;
-    setup->bond.normal_strength = setup->bond.shear_strength =
-        given_or(parameters->bond_contact_strength, INFINITY);
+    if (parameters->bond_kind == BOND_CONTACT)
+        bond->normal_strength = bond->shear_strength =
+            given_or(parameters->bond_contact_strength, INFINITY);
+    scene->normal_strength = scale_bond_strengths(packing, bond->normal_strength);
+    scene->shear_strength = scale_bond_strengths(packing, bond->shear_strength);
+    scene->setup.normal_strength = scene->normal_strength;
+    scene->setup.shear_strength = scene->shear_strength;
 }
 
 // NAN for the safety leaves the step to the engine's stability limit, unless time_step
@@ -365,7 +370,7 @@ enum status scene_init(const struct simulate_parameters *parameters,
     if (!status) status = read_walls(parameters, packing, scene, reason);
     if (status) return status;
     read_liquid(parameters, scene);
-    read_bonds(parameters, &scene->setup);
+    read_bonds(parameters, packing, scene);
     set_engine(parameters, packing, scene);
     return check_strain(parameters, scene, reason);
 }
@@ -373,11 +378,11 @@ enum status scene_init(const struct simulate_parameters *parameters,
 void scene_free(struct scene *scene)
 {
     void *const owned[] = {
-        scene->material,         scene->pair_friction, scene->material_of,
-        scene->pair_restitution, scene->group_of,      scene->driven_of,
-        scene->driven_group,     scene->driven,        scene->wall,
-        scene->wall_more,        scene->velocity,      scene->spin,
-        scene->pair_rolling};
+        scene->material,         scene->pair_friction,   scene->material_of,
+        scene->pair_restitution, scene->group_of,        scene->driven_of,
+        scene->driven_group,     scene->driven,          scene->wall,
+        scene->wall_more,        scene->velocity,        scene->spin,
+        scene->pair_rolling,     scene->normal_strength, scene->shear_strength};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     *scene = (struct scene){0};

@@ -37,6 +37,7 @@ struct scene {
     struct dem_group *driven;     // (n_driven)
     struct dem_wall *wall;        // (setup.n_wall)
     struct scene_wall *wall_more; // (setup.n_wall)
+    double *normal_strength, *shear_strength; // (n_bond) NULL: those of setup.bond
     struct dem_liquid liquid;
     struct vector *velocity, *spin; // (n_particle) at the start
 };

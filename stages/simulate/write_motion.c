@@ -143,9 +143,12 @@ static void keep_intact_bonds(const struct dem *dem, struct packing *packing)
     uint8_t *intact = NEW_ARRAY(uint8_t, packing->n_bond);
     dem_bonds_intact(dem, intact);
     int kept = 0;
-    for (int b = 0; b < packing->n_bond; b++)
-        if (intact[b])
-            memmove(packing->bond[kept++], packing->bond[b], sizeof *packing->bond);
+    for (int b = 0; b < packing->n_bond; b++) {
+        if (!intact[b]) continue;
+        if (packing->bond_strength)
+            packing->bond_strength[kept] = packing->bond_strength[b];
+        memmove(packing->bond[kept++], packing->bond[b], sizeof *packing->bond);
+    }
     packing->n_bond = kept;
     free(intact);
 }
@@ -210,6 +213,7 @@ void put_final_packing(struct artifact *artifact,
     packing.position = NEW_ARRAY(struct vector, n);
     packing.bond =
         duplicate(before->bond, (size_t)before->n_bond, sizeof *before->bond);
+    packing.bond_strength = copy_bond_strengths(before);
     struct vector *velocity = NEW_ARRAY(struct vector, n);
     dem_positions(outcome->dem, packing.position);
     dem_box(outcome->dem, &packing.lower, &packing.upper);
@@ -223,5 +227,6 @@ void put_final_packing(struct artifact *artifact,
     artifact_put(artifact, "/particles/velocity", velocity, n);
     free(packing.position);
     free(packing.bond);
+    free(packing.bond_strength);
     free(velocity);
 }

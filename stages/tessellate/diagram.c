@@ -114,6 +114,7 @@ static void copy_packing(const struct packing *from, struct packing *to)
     to->radius = duplicate(from->radius, (size_t)from->n_particle, sizeof *to->radius);
     if (from->kind) to->kind = duplicate(from->kind, (size_t)from->n_particle, 1);
     to->bond = duplicate(from->bond, (size_t)from->n_bond, sizeof *to->bond);
+    to->bond_strength = copy_bond_strengths(from);
     move_inside(to);
 }
 

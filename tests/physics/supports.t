@@ -178,4 +178,34 @@ with scratch() as folder:
         ok(np.array_equal(rows[0], rows[1]) and not np.isclose(rows[0], rows[2]).any(),
            f"{engine}: strengths are those of the seed, whatever their mean")
     ok((replay()["bonds/relative_strength"][:] == 1).all(), "one strength unless told otherwise")
+
+    # ---- strengths that the packing brings go with it, and are multiplied with those drawn
+    run(*small, "-o", at("packing"))
+    with h5py.File(at("packing"), "r+") as file:
+        own = np.random.default_rng(7).uniform(0.5, 2, len(file["bonds/particles"]))
+        own[40] = 0
+        file["bonds/relative_strength"] = own
+        pair = file["bonds/particles"][40]
+    with open(at("packing"), "rb") as file:
+        network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE, input=file.read()))
+    run("force-protocol", "-p", SCENE, "--set", "steps=4", "--set", "force_scale=1", "-o", at("forces"),
+        input=run("dry", "-p", SCENE, input=network))
+    weibull = "bond.strength.distribution=weibull", "bond.strength.modulus=2"
+    for engine in "explicit", "quasi-static":
+        response = replay(f"engine={engine}")
+        broken = response["cracks/bond"][:]
+        ok(np.array_equal(response["bonds/relative_strength"][:], own) and len(broken) and broken[0] == 40,
+           f"{engine}: bonds have the strengths of the packing, and one of none breaks first", broken)
+    both = replay(*weibull, "keep_state=true")["bonds/relative_strength"][:]
+    ok(np.allclose(both, own * rows[0], rtol=1e-14), "times what is drawn")
+    os.rename(at("response"), at("earlier"))
+    run("dem-replay", "-q", "-p", SCENE, *sets(*HELD, "cycles=50", *weibull, "bond.strength.seed=9"), at("forces"), at("earlier"),
+        "-o", at("response"))
+    ok(np.array_equal(h5py.File(at("response"))["bonds/relative_strength"][:], both), "a replay that goes on keeps them")
+    ok((replay("bond.by=touching")["bonds/relative_strength"][:] == 1).all(), "bonds found anew have none of them")
+    with h5py.File(at("packing"), "r+") as file:
+        file["particles/velocity"] = 1e-3 * np.random.default_rng(1).normal(size=(64, 3))
+    run("simulate", "-q", *sets("bond.kind=parallel", "duration=1e-9", 'materials={"glass":{"density":3230,"young_modulus":7e10}}'),
+        at("packing"), "-o", at("motion"))
+    ok(h5py.File(at("motion"))["cracks/bond"][:].tolist() == [40], "simulate breaks the one of no strength")
 done()

@@ -409,6 +409,9 @@ struct packing artifact_get_packing(const struct artifact *artifact)
     if (artifact_has_dataset(artifact, "/particles/kind"))
         packing.kind = artifact_get(artifact, "/particles/kind", NULL);
     packing.bond = artifact_get(artifact, "/bonds/particles", &packing.n_bond);
+    if (artifact_has_dataset(artifact, "/bonds/relative_strength"))
+        packing.bond_strength =
+            artifact_get(artifact, "/bonds/relative_strength", NULL);
 
     struct vector *lower = artifact_get(artifact, "/domain/lower", NULL);
     struct vector *upper = artifact_get(artifact, "/domain/upper", NULL);

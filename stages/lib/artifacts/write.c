@@ -299,6 +299,9 @@ void artifact_put_packing(struct artifact *artifact, const struct packing *packi
     artifact_put(artifact, "/domain/periodic", packing->periodic, 3);
     put_bodies(artifact, packing);
     artifact_put(artifact, "/bonds/particles", packing->bond, packing->n_bond);
+    if (packing->bond_strength)
+        artifact_put(artifact, "/bonds/relative_strength", packing->bond_strength,
+                     packing->n_bond);
 }
 
 // Each is left out where its array is NULL: such throats conduct as cylinders.

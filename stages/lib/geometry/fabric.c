@@ -26,6 +26,8 @@ struct contacts find_contacts(const struct packing *packing, double gap)
 void bond_contacts(struct packing *packing, const struct contacts *contacts)
 {
     free(packing->bond);
+    free(packing->bond_strength);
+    packing->bond_strength = NULL;
     packing->n_bond = contacts->count;
     packing->bond =
         duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);

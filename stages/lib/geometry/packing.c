@@ -13,6 +13,9 @@
 // diameter.
 #include "geometry/packing.h"
 
+#include "basics/memory.h"
+
+#include <math.h>
 #include <stdlib.h>
 
 bool is_periodic(const struct packing *packing)
@@ -101,11 +104,27 @@ double packing_domain_volume(const struct packing *packing)
     return room - holes;
 }
 
+double *copy_bond_strengths(const struct packing *packing)
+{
+    if (!packing->bond_strength) return NULL;
+    return duplicate(packing->bond_strength, (size_t)packing->n_bond, sizeof(double));
+}
+
+double *scale_bond_strengths(const struct packing *packing, double mean)
+{
+    if (!packing->bond_strength || isinf(mean)) return NULL;
+    double *strength = NEW_ARRAY(double, packing->n_bond);
+    for (int b = 0; b < packing->n_bond; b++)
+        strength[b] = mean * packing->bond_strength[b];
+    return strength;
+}
+
 void packing_free(struct packing *packing)
 {
     free(packing->position);
     free(packing->radius);
     free(packing->kind);
     free(packing->bond);
+    free(packing->bond_strength);
     *packing = (struct packing){0};
 }

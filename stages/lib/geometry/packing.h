@@ -53,7 +53,8 @@ struct packing {
     int n_body;
     struct body body[MOST_BODIES]; // what bounds the grains besides the box
     int n_bond;
-    int32_t (*bond)[2]; // (n_bond) the two bonded grains, lower index first
+    int32_t (*bond)[2];    // (n_bond) the two bonded grains, lower index first
+    double *bond_strength; // (n_bond) over the mean one; NULL: all have the mean
 };
 
 // Whether the box repeats along any direction.
@@ -91,6 +92,13 @@ struct vector image_apart(const struct packing *packing, struct vector from,
 
 // Volume of the box, or of the body within it, without what is cut out, m3.
 double packing_domain_volume(const struct packing *packing);
+
+// The strengths of the bonds (n_bond), which the caller frees; NULL if it has none.
+double *copy_bond_strengths(const struct packing *packing);
+
+// MEAN times what each bond has of it (n_bond), which the caller frees; NULL where all
+// have MEAN, also if that is INFINITY.
+double *scale_bond_strengths(const struct packing *packing, double mean);
 
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);
