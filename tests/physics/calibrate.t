@@ -64,7 +64,8 @@ ok(abs(found[0] / 1e9 - 1) < 1e-3 and abs(found[1] - 0.15) < 1e-3 and abs(found[
 with open(at("calibrated.json"), encoding="utf-8") as file:
     scene = json.load(file)
 slow = numbers(calibrate(scene, "slow", program="measure"))
-ok(abs(slow[0] / 1e9 - 1) < 0.02 and abs(slow[1] - 0.15) < 0.02, "and has its moduli by time steps with friction", slow)
+ok(abs(slow[0] / 1e9 - 1) < 0.02 and abs(slow[1] - 0.15) < 0.02 and abs(slow[2] / 1e5 - 1) < 0.02,
+   "and has it by time steps with friction", slow)
 
 # Unequal grains, one of which keeps a residual force of a few 1e-8 of the load.
 UNEQUAL = {"pack": {"method": "deposition", "count": 60, "radius": 12e-6, "seed": 3, "sizes": {"distribution": "lognormal", "spread": 0.35}},
