@@ -88,6 +88,8 @@ ok(column(rows, "cracks.total", liquid="immobile", strength="2000", seed="2") ==
    "a run counts what the stages count by themselves", cracks)
 fine, counts, said, _ = study("make", "small.json")
 ok(fine and not counts, "nothing is made again", counts)
+fine, _, said, _ = study("batch", "small.json")
+ok(fine and "no file is written" in said and not os.path.exists(at("runs/small/study.sbatch")), "nor is there a batch to submit", said)
 
 first = [r["cracks.total"] for r in rows if r["seed"] == "1"]
 summary = [r for r in table("small", "summary.tsv") if r["measure"] == "cracks.total"]
