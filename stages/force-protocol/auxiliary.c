@@ -24,7 +24,7 @@ static void copy_bonds(const struct packing *from, const int32_t *number,
         const int32_t first = number[from->bond[b][0]];
         const int32_t second = number[from->bond[b][1]];
         if (first < 0 || second < 0) continue;
-        if (to->bond_strength) to->bond_strength[to->n_bond] = from->bond_strength[b];
+        if (from->bond_strength) to->bond_strength[to->n_bond] = from->bond_strength[b];
         to->bond[to->n_bond][0] = first;
         to->bond[to->n_bond++][1] = second;
     }

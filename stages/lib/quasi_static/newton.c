@@ -53,6 +53,15 @@ static int changed_components(const struct quasi_static *qs, int j,
     return pair->shear_stiffness > 0 ? 3 : 1;
 }
 
+// Whether frictionless_step costs less than the dense system of COUNT rows, R^3 / 3
+// multiplications; it takes some factors of K until few pairs change.
+static bool are_many_without_friction(const struct quasi_static *qs, double count)
+{
+    const double least = 128, factors = 0.1;
+    return is_frictionless(qs) && !(qs->damping > 0) && count > least &&
+           count * count * count / 3 > factors * stiffness_work(qs->matrix);
+}
+
 enum step_outcome { STEP_FOUND, TOO_MANY_ROWS, CONTACTS_UNSOLVED };
 
 // Activates pairs that have changed, here or after MORE of deformation; NULL: after
@@ -76,6 +85,7 @@ static enum step_outcome add_changed_pairs(struct quasi_static *qs,
         }
         if (components > 0) qs->changed[count++] = (struct pair_rows){j, components};
     }
+    if (are_many_without_friction(qs, count)) return TOO_MANY_ROWS;
     if (!contact_solver_add(qs->contacts, count, qs->changed)) return TOO_MANY_ROWS;
     *is_new = contact_solver_count(qs->contacts) > before;
     return STEP_FOUND;

@@ -150,6 +150,16 @@ bool factor_tangent(struct quasi_static *qs);
 // says that it is new. False: neither helps.
 bool newton_step(struct quasi_static *qs, bool *is_fresh);
 
+// Small displacements and no friction: contacts are open or closed, without history.
+static inline bool is_frictionless(const struct quasi_static *qs)
+{
+    return !qs->setup.large_displacements && !(qs->setup.material.friction > 0);
+}
+
+// A step of it without friction, where many contacts change, with the tangent as pairs
+// are before it. False: it leads nowhere, or there is friction or damping.
+bool frictionless_step(struct quasi_static *qs);
+
 // The iterate becomes the last equilibrium, with the history of its contacts; and back.
 // Committing also moves the anchors of contacts that slipped.
 void commit_state(struct quasi_static *qs);

@@ -53,7 +53,9 @@ static bool solve_small(struct quasi_static *qs)
         if (left <= well || (left <= qs->tolerance_now && left >= 0.1 * before))
             return true;
         before = left;
-        if (!newton_step(qs, &is_fresh)) break;
+        if (newton_step(qs, &is_fresh)) continue;
+        if (!frictionless_step(qs)) break;
+        is_fresh = false;
     }
     update_residual(qs);
     return largest_residual(qs) <= qs->tolerance_now;
