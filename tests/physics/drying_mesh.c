@@ -204,6 +204,43 @@ static void test_width_of_vectors_does_not_matter(void **state)
         true, 1e-6);
 }
 
+// Eliminates every third site of a chain in which each site is linked to the air.
+static struct kron_fronts chain_in_air(int n)
+{
+    struct kron_fronts mesh = kron_fronts_init(n, false);
+    for (int i = 0; i < n; i++) {
+        kron_fronts_link_air(&mesh, i, 1 + i);
+        if (i > 0) kron_fronts_link(&mesh, i - 1, i, 1.0 / i);
+    }
+    for (int i = 1; i < n; i += 3)
+        kron_fronts_eliminate(&mesh, i);
+    return mesh;
+}
+
+// More sites with air than the mesh that a state is restored to had ever had: room for
+// them is made on the way.
+static void test_restored_state_has_the_same_air(void **state)
+{
+    (void)state;
+    enum { CHAIN = 1000 };
+    struct kron_fronts mesh = chain_in_air(CHAIN);
+    struct checkpoint_stream kept = stream_to_keep();
+    kron_fronts_state(&mesh, &kept);
+    struct array_list list = stream_list(&kept, "mesh");
+    stream_free(&kept);
+
+    struct kron_fronts other = kron_fronts_init(CHAIN, false);
+    struct checkpoint_stream restored = stream_to_restore(&list, "mesh");
+    kron_fronts_state(&other, &restored);
+    assert_true(stream_is_whole(&restored) && kron_fronts_fit(&other));
+    for (int i = 0; i < CHAIN; i++)
+        assert_true(kron_fronts_air(&other, i) == kron_fronts_air(&mesh, i));
+    stream_free(&restored);
+    free_arrays(list.array, list.count);
+    kron_fronts_free(&other);
+    kron_fronts_free(&mesh);
+}
+
 int main(void)
 {
     cmocka_set_message_output(CM_OUTPUT_TAP);
@@ -211,6 +248,7 @@ int main(void)
         cmocka_unit_test(test_every_digit_over_twelve_decades),
         cmocka_unit_test(test_every_digit_where_conductances_are_alike),
         cmocka_unit_test(test_shut_in_is_exactly_zero),
+        cmocka_unit_test(test_restored_state_has_the_same_air),
         UNIT_TEST_WHERE(has_avx512(), "no wide vectors here",
                         test_width_of_vectors_does_not_matter)};
     return cmocka_run_group_tests(tests, NULL, NULL);

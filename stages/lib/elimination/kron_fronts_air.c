@@ -120,7 +120,9 @@ void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
     stream_numbers(stream, air, fronts->n_site);
     for (int i = 0; stream->restoring && i < fronts->n_site; i++) {
         air_take(fronts, i);
-        if (air[i] != 0) fronts->air[new_place(fronts, i)] = air[i];
+        if (air[i] == 0) continue;
+        const int place = new_place(fronts, i); // may move fronts->air
+        fronts->air[place] = air[i];
     }
     free(air);
     stream_sums(stream, &fronts->all_air, 1);
