@@ -16,7 +16,8 @@
 // move needs this order: nodes first, as lengths and clearances are measured between
 // them; then count_changed_nodes, as volumes and conductances are found anew from the
 // faces only if these are still those of the diagram; liquid last, as it needs the new
-// volumes. Only a drying has liquid; of a network none is known and none is written.
+// volumes. Only a drying has liquid; of a network none is known and none is written, so
+// one with liquid is refused, as first input and as third.
 //
 // Written: a network with /throats/saturation and /summary/liquid_volume and
 // expelled_volume (where liquid is known), changed_nodes and closed_throats; or a
@@ -98,6 +99,14 @@ static struct artifact *open_network(const char *path)
         die(STATUS_BAD_DATA, "%s: must be a drying or a network, is a %s",
             input_name(path), schema);
     return input;
+}
+
+// Exits 65 at a network that says how full its throats are; ADVICE says what to do.
+static void refuse_saturation(const struct artifact *input, const char *advice)
+{
+    static const char name[] = "/throats/saturation";
+    if (!strcmp(input->schema->name, "network") && artifact_has_dataset(input, name))
+        die(STATUS_BAD_DATA, "%s: %s: %s", input_name(input->path), name, advice);
 }
 
 // Where the grains were at the last snapshot of RESPONSE, in place of their places:
@@ -333,7 +342,9 @@ static void check_same_grains(const struct scene *scene, const struct network *r
 // Another network of the moved grains takes its place.
 static void replace(struct scene *scene)
 {
-    struct artifact *third = open_network(scene->invocation->inputs[2]);
+    struct artifact *third = artifact_open(scene->invocation->inputs[2], "network");
+    refuse_saturation(third, "it gets the liquid of the first input: give the network "
+                             "that tessellate or merge-nodes made of these grains");
     struct network renewed = artifact_get_periodic_network(third);
     check_same_grains(scene, &renewed, third->path);
     struct neighbour_grains around = find_neighbour_grains(&scene->before);
@@ -413,7 +424,12 @@ int main(int argc, char **argv)
                           .invocation = &invocation,
                           .input = open_network(invocation.inputs[0]),
                           .response = artifact_open(invocation.inputs[1], "response")};
-    if (parameters.write != WRITE_PACKING) refuse_rings(scene.input);
+    if (parameters.write != WRITE_PACKING) {
+        refuse_rings(scene.input);
+        refuse_saturation(scene.input, "the liquid of a network cannot go along with "
+                                       "moved grains, that of a drying can: give the "
+                                       "drying that dry makes of it");
+    }
     scene.before = artifact_get_periodic_network(scene.input);
     scene.after = artifact_get_periodic_network(scene.input);
     take_places(scene.response, &scene.after.packing);

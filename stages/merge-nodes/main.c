@@ -2,12 +2,12 @@
 // merge-nodes: short throats removed from a pore network [K 3.3.7]. Reads a network,
 // also one of a box that repeats, and writes it with fewer nodes and throats.
 //
-// In this order: read; count what there is, for the report (report.h); turn cylinders
-// into volumes, if these are to be conserved; merge the nodes of throats shorter than
-// the threshold, shortest first (merge.h); count again and write the report; see that
-// images are still near enough to be numbered; write. Counting comes before the volumes
-// are given, which changes no number of it. What was merged, fused and kept is counted
-// in `model`.
+// In this order: read, but for a network with liquid; count what there is, for the
+// report (report.h); turn cylinders into volumes, if these are to be conserved; merge
+// the nodes of throats shorter than the threshold, shortest first (merge.h); count
+// again and write the report; see that images are still near enough to be numbered;
+// write. Counting comes before the volumes are given, which changes no number of it.
+// What was merged, fused and kept is counted in `model`.
 //
 // `threshold` has four units, by `measure`: mean grain radii, mean throat lengths, m,
 // or a share of the throats, which is the only one with an upper limit (1) and is
@@ -105,6 +105,18 @@ static void check_images(const struct network *network, const char *path)
             input_name(path), FARTHEST_IMAGE);
 }
 
+// Saturations are those of single throats: none is known of throats that merging fuses.
+// Exits 65.
+static void refuse_liquid(const struct artifact *input)
+{
+    if (artifact_has_dataset(input, "/throats/saturation"))
+        die(STATUS_BAD_DATA,
+            "%s: /throats/saturation: merging would lose the liquid in the throats: "
+            "merge the nodes of a network that tessellate has made, or dry this one "
+            "as it is",
+            input_name(input->path));
+}
+
 static int estimate(const struct invocation *invocation)
 {
     const struct body_size body = input_size(invocation, 0);
@@ -124,6 +136,7 @@ int main(int argc, char **argv)
             parameters.threshold);
     if (invocation.estimates) return estimate(&invocation);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
+    refuse_liquid(input);
     struct network network = artifact_get_periodic_network(input);
 
     struct merge_report report;

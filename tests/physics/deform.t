@@ -214,6 +214,23 @@ with scratch() as folder:
     ok(end.returncode == 65 and b"is not where the response has the grains now" in end.stderr,
        "a network of other places is refused", end.stderr)
 
+    # Liquid that would be lost without a word.
+    def refused(title, says, stage, *words):
+        end = subprocess.run([f"{BIN}/{stage}", *words, "-o", at("none")], capture_output=True, text=True)
+        ok(end.returncode == 65 and len(end.stderr.splitlines()) == 1 and says in end.stderr and not os.path.exists(at("none")),
+           title, f"{end.returncode}: {end.stderr}")
+
+    saturation_of = lambda name: f"{at(name)}: /throats/saturation: "
+    refused("nodes of a network with liquid are not merged", saturation_of("carried"), "merge-nodes", at("carried"))
+    refused("nor those of a drying", "must be a network, is a drying", "merge-nodes", at("drying"))
+    refused("a network with liquid is not moved", saturation_of("carried"), "deform", at("carried"), at("response"))
+    refused("nor does it take the liquid of another one", saturation_of("carried"),
+            "deform", at("drying"), at("response"), at("carried"))
+    run("dry", *scene, "--set", "stop_saturation=0.9", at("anew"), "-o", at("dried"))
+    refused("nor does a drying", "must be a network, is a drying", "deform", at("drying"), at("response"), at("dried"))
+    ok(run("deform", "--set", "write=packing", at("carried"), at("response")), "its grains alone are moved")
+    ok(run("dry", *scene, at("carried")), "and it dries on")
+
     # Drawn radii go along, liquid too: as they were where nothing moves, and spread as they were.
     run("dry", *scene, *"--set throat_radius.distribution=lognormal --set throat_radius.mean=1e-7 --set".split(),
         "throat_radius.standard_deviation=3e-8", "--set", "stop_saturation=0.6", at("network"), "-o", at("drying"))
