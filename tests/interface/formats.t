@@ -114,6 +114,20 @@ with scratch() as folder:
         ok(len(back["faces/particles"]) == 0 and len(back["particles/radius"]) == 0,
            f"{name}: which is all that the format holds")
 
+    # A layer of auxiliary grains, and bonds of different strengths.
+    made = run("pack", "--quiet", "--set", "counts=[4,4,4]", "--set", "extra_layer=true")
+    with open(at("layer.h5"), "wb") as file:
+        file.write(made)
+    with h5py.File(at("layer.h5"), "r+") as file:
+        file["bonds/relative_strength"] = np.linspace(0, 2, len(file["bonds/particles"]))
+    run("merge-nodes", "-o", at("layered.h5"), input=run("tessellate", at("layer.h5")))
+    run("inspect", "--openpnm", at("layered.json"), at("layered.h5"))
+    run("import-network", at("layered.json"), "-o", at("back.h5"))
+    network, back = h5py.File(at("layered.h5")), h5py.File(at("back.h5"))
+    ok(same(network, back) and network["particles/kind"][:].tolist().count(1) == 16
+       and np.ptp(network["bonds/relative_strength"][:]) == 2,
+       "read back, the same auxiliary grains and strengths of bonds")
+
     # A graph by others: no additions.
     bare = {"graph": {"metadata": {"number_of_nodes": 2, "number_of_links": 1}, "nodes": [
         {"id": "1", "metadata": {"node_coordinates": {"x": 3, "y": 4, "z": 0}}},
@@ -166,6 +180,19 @@ with scratch() as folder:
     full = json.loads(read(at("graph.json")))
     full["graph"]["metadata"]["craquelure"]["faces"]["nodes"][3][0] = 10**6
     refused("a face around no node is refused", "faces.nodes[3]", document=full)
+    layered = json.loads(read(at("layered.json")))
+    rest = layered["graph"]["metadata"]["craquelure"]
+    for wrong in 2, -1, 0.5, None:
+        rest["particles"]["kind"][5] = wrong
+        refused(f"grains of kind {wrong} are refused", "particles.kind: must be 0 or 1", document=layered)
+    rest["particles"]["kind"].pop()
+    refused("a grain without a kind is refused", "particles.kind: must be 0 or 1", document=layered)
+    del rest["particles"]["kind"]
+    for wrong in -1, "strong":
+        rest["relative_strength"][7] = wrong
+        refused(f"a strength of {wrong} is refused", "relative_strength: must be a number of 0 or more", document=layered)
+    rest["relative_strength"].pop(7)
+    refused("a bond without a strength is refused", "relative_strength: must be a number", document=layered)
     refused("no such files are refused", "No such file", "--set", "format=statoil", at("none"), status=66)
     refused("standard input is refused for four files", "prefix", "--set", "format=statoil", status=64)
     with open(at("x_link1.dat"), "a+") as file:

@@ -23,8 +23,7 @@
 //
 // Other programs read the squared radius; ours stands beside it, as the root of a
 // square need not be the same to the last digit. Rows go by their ids, so lists may
-// come in any order. There is no member for kinds of grains: auxiliary ones come back
-// as solid.
+// come in any order.
 #include "formats/jsongraph.h"
 
 #include "basics/memory.h"
@@ -150,26 +149,47 @@ static json_t *bodies_json(const struct packing *packing)
     return bodies;
 }
 
-// What is under "craquelure": lower, upper, periodic (three 0 or 1), particles
-// {position, radius}, bonds, faces, unmerged_throats and unmerged_length (0: not
-// merged), and bodies where there are some. All in one member, which other programs
-// pass over. Images of a box that repeats have none: such networks are refused before.
-static json_t *rest_json(const struct network *network)
+// {position, radius, kind}: enum grain_kind, where not all are solid.
+static json_t *particles_json(const struct packing *packing)
 {
-    const struct packing *packing = &network->packing;
-    json_t *position = json_array(), *radius = json_array();
+    json_t *position = json_array(), *radius = json_array(), *kind = json_array();
     for (int i = 0; i < packing->n_particle; i++) {
         json_array_append_new(position, vector_json(packing->position[i]));
         json_array_append_new(radius, json_real(packing->radius[i]));
+        json_array_append_new(kind, json_integer(is_auxiliary(packing, i)));
     }
+    json_t *particles = json_pack("{s:o,s:o}", "position", position, "radius", radius);
+    if (packing->kind) json_object_set(particles, "kind", kind);
+    json_decref(kind);
+    return particles;
+}
+
+// The rows of /bonds/relative_strength.
+static json_t *strengths_json(const struct packing *packing)
+{
+    json_t *strengths = json_array();
+    for (int b = 0; b < packing->n_bond; b++)
+        json_array_append_new(strengths, json_real(packing->bond_strength[b]));
+    return strengths;
+}
+
+// What is under "craquelure": lower, upper, periodic (three 0 or 1), particles, bonds,
+// faces, unmerged_throats and unmerged_length (0: not merged); relative_strength of the
+// bonds and bodies where there are some. All in one member, which other programs pass
+// over. Images of a box that repeats have none: such networks are refused before.
+static json_t *rest_json(const struct network *network)
+{
+    const struct packing *packing = &network->packing;
     json_t *rest = json_pack(
-        "{s:o,s:o,s:[i,i,i],s:{s:o,s:o},s:o,s:o,s:i,s:f}", "lower",
-        vector_json(packing->lower), "upper", vector_json(packing->upper), "periodic",
-        packing->periodic[0], packing->periodic[1], packing->periodic[2], "particles",
-        "position", position, "radius", radius, "bonds",
+        "{s:o,s:o,s:[i,i,i],s:o,s:o,s:o,s:i,s:f}", "lower", vector_json(packing->lower),
+        "upper", vector_json(packing->upper), "periodic", packing->periodic[0],
+        packing->periodic[1], packing->periodic[2], "particles",
+        particles_json(packing), "bonds",
         pairs_json((const int32_t(*)[2])packing->bond, packing->n_bond), "faces",
         faces_json(network), "unmerged_throats", network->unmerged_throats,
         "unmerged_length", network->unmerged_length);
+    if (packing->bond_strength)
+        json_object_set_new(rest, "relative_strength", strengths_json(packing));
     if (packing->n_body) json_object_set_new(rest, "bodies", bodies_json(packing));
     return rest;
 }
@@ -315,6 +335,65 @@ static enum status read_particles(json_t *rest, struct packing *packing,
                         "a radius above 0 each");
 }
 
+// Without the member all are solid. Needs the number of grains.
+static enum status read_kinds(json_t *rest, struct packing *packing,
+                              struct reason *reason)
+{
+    const size_t n = (size_t)packing->n_particle;
+    json_t *kinds = json_object_get(json_object_get(rest, "particles"), "kind");
+    if (!kinds) return STATUS_OK;
+    packing->kind = NEW_ARRAY(uint8_t, n);
+    bool good = json_array_size(kinds) == n;
+    for (size_t i = 0; i < n && good; i++) {
+        const json_t *kind = json_array_get(kinds, i);
+        const json_int_t value = json_integer_value(kind);
+        good =
+            json_is_integer(kind) && value >= GRAIN_SOLID && value <= GRAIN_AUXILIARY;
+        packing->kind[i] = (uint8_t)value;
+    }
+    return good ? STATUS_OK
+                : refuse(reason, STATUS_BAD_DATA,
+                         "graph.metadata.craquelure.particles.kind: must be 0 or 1 "
+                         "(auxiliary) for each grain");
+}
+
+// Without the member all bonds have the mean strength. Needs the number of bonds.
+static enum status read_strengths(json_t *rest, struct packing *packing,
+                                  struct reason *reason)
+{
+    const size_t n = (size_t)packing->n_bond;
+    json_t *strengths = json_object_get(rest, "relative_strength");
+    if (!strengths) return STATUS_OK;
+    packing->bond_strength = NEW_ARRAY(double, n);
+    bool good = json_array_size(strengths) == n;
+    for (size_t b = 0; b < n && good; b++) {
+        const json_t *strength = json_array_get(strengths, b);
+        packing->bond_strength[b] = json_number_value(strength);
+        good = json_is_number(strength) && packing->bond_strength[b] >= 0;
+    }
+    return good ? STATUS_OK
+                : refuse(reason, STATUS_BAD_DATA,
+                         "graph.metadata.craquelure.relative_strength: must be a "
+                         "number of 0 or more for each bond");
+}
+
+// Bonds are pairs of grains, of which there must be enough.
+static enum status read_bonds(json_t *rest, struct packing *packing,
+                              struct reason *reason)
+{
+    free(packing->bond);
+    packing->bond = read_pairs(json_object_get(rest, "bonds"), &packing->n_bond);
+    bool good = packing->bond != NULL;
+    for (int b = 0; b < packing->n_bond && good; b++)
+        good = packing->bond[b][0] >= 0 && packing->bond[b][0] < packing->bond[b][1] &&
+               packing->bond[b][1] < packing->n_particle;
+    if (!good)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "graph.metadata.craquelure.bonds: must be pairs of grains, the "
+                      "lower first");
+    return read_strengths(rest, packing, reason);
+}
+
 // Lengths first, which give the offsets and so the room; then the nodes.
 static enum status read_loops(json_t *loops, struct network *network,
                               struct reason *reason)
@@ -417,17 +496,9 @@ static enum status read_rest(json_t *rest, struct network *network,
                       "graph.metadata.craquelure: must have a box, lower below upper");
     enum status status = read_bodies(json_object_get(rest, "bodies"), packing, reason);
     if (!status) status = read_particles(rest, packing, reason);
+    if (!status) status = read_kinds(rest, packing, reason);
+    if (!status) status = read_bonds(rest, packing, reason);
     if (status) return status;
-    free(packing->bond);
-    packing->bond = read_pairs(json_object_get(rest, "bonds"), &packing->n_bond);
-    good = packing->bond != NULL;
-    for (int b = 0; b < packing->n_bond && good; b++)
-        good = packing->bond[b][0] >= 0 && packing->bond[b][0] < packing->bond[b][1] &&
-               packing->bond[b][1] < packing->n_particle;
-    if (!good)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "graph.metadata.craquelure.bonds: must be pairs of grains, the "
-                      "lower first");
     return read_faces(rest, network, reason);
 }
 

@@ -6,7 +6,7 @@
 //     graph.edges[].id, .source, .target, .metadata.link_length, .link_squared_radius
 // Metadata may hold more. We add link_radius, link_volume, link_kind and node_walls,
 // and all that is not a graph (box, grains, bonds, faces) as graph.metadata.craquelure,
-// so that a network comes back as it was, but for the kinds of its grains.
+// so that a network comes back as it was.
 #ifndef CRAQUELURE_JSONGRAPH_H
 #define CRAQUELURE_JSONGRAPH_H
 
