@@ -4,10 +4,10 @@
 #include "../test.h"
 #include "basics/memory.h"
 #include "bridges/bridges.h"
-#include "force-protocol/auxiliary.h"
 #include "force-protocol/pendular_rings.h"
 #include "force-protocol/times.h"
 #include "force_rows.h"
+#include "geometry/auxiliary.h"
 #include "support_lattice.h"
 
 #include <math.h>

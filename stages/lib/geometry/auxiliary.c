@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that stay keep their order; a bond with one that goes is dropped.
-#include "auxiliary.h"
+#include "geometry/auxiliary.h"
 
 #include "basics/memory.h"
 
