@@ -27,7 +27,7 @@ static int compare_gaps(const void *a, const void *b)
     return (p->gap > q->gap) - (p->gap < q->gap);
 }
 
-// Pairs of solid grains up to GAP apart, the nearest first; the caller frees them.
+// Pairs of grains up to GAP apart, the nearest first; the caller frees them.
 static struct near_pair *pairs_by_gap(const struct packing *packing, double gap,
                                       int *count)
 {
@@ -37,7 +37,6 @@ static struct near_pair *pairs_by_gap(const struct packing *packing, double gap,
     *count = 0;
     for (int k = 0; k < all; k++) {
         const int i = pair[k][0], j = pair[k][1];
-        if (is_auxiliary(packing, i) || is_auxiliary(packing, j)) continue;
         const double sum = packing->radius[i] + packing->radius[j];
         near[(*count)++] =
             (struct near_pair){norm(nearest_image(packing, i, j)) / sum - 1, {i, j}};
@@ -57,7 +56,7 @@ static double joining_gap(const struct packing *packing, int wanted, double most
     int *piece = NEW_ARRAY(int, n), *size = NEW_ARRAY(int, n);
     for (int i = 0; i < n; i++) {
         piece[i] = i;
-        size[i] = !is_auxiliary(packing, i);
+        size[i] = 1;
     }
     double gap = NAN;
     for (int k = 0; k < count && isnan(gap); k++) {
@@ -80,7 +79,7 @@ static void count_pieces(const struct packing *packing, struct bond_facts *facts
     const int n = packing->n_particle;
     int *piece = bonded_pieces(packing), *size = NEW_ARRAY(int, n);
     for (int i = 0; i < n; i++)
-        size[piece[i]] += !is_auxiliary(packing, i);
+        size[piece[i]]++;
     for (int i = 0; i < n; i++) {
         facts->pieces += size[i] > 0;
         facts->largest = size[i] > facts->largest ? size[i] : facts->largest;
@@ -96,17 +95,13 @@ struct bond_facts bond_facts(const struct packing *packing)
     struct bond_facts facts = {.gap = NAN};
     uint8_t *holds = NEW_ARRAY(uint8_t, n);
     for (int i = 0; i < n; i++) {
-        holds[i] = !is_auxiliary(packing, i) && !packing->periodic[2] &&
-                   touches_walls(packing, i, WALL_Z_LOWER);
+        holds[i] = !packing->periodic[2] && touches_walls(packing, i, WALL_Z_LOWER);
         facts.at_bottom += holds[i];
     }
     facts.supported = count_supported(packing, holds);
     free(holds);
     count_pieces(packing, &facts);
-    int solid = 0;
-    for (int i = 0; i < n; i++)
-        solid += !is_auxiliary(packing, i);
-    const int wanted = (int)ceil(MOST_GRAINS * solid);
+    const int wanted = (int)ceil(MOST_GRAINS * n);
     static const double within[] = {0.02, 0.1, 0.5}; // wider ones find many more pairs
     for (int k = 0; k < 3 && isnan(facts.gap) && facts.largest < wanted; k++)
         facts.gap = joining_gap(packing, wanted, within[k]);

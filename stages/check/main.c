@@ -8,7 +8,8 @@
 //
 // Lengths become metres before anything is measured (import.scale, import.diameters),
 // as pack does it; an artifact keeps its own bonds. Contacts are pairs within
-// touching_gap, of the sum of the radii. The material is only for the suggestions and
+// touching_gap, of the sum of the radii. Grains of an auxiliary layer, and its part of
+// the box, do not count. The material is only for the suggestions and
 // the weight: no other finding depends on it. A liquid without a known surface tension
 // at the temperature ends the call before grains are read.
 //
@@ -17,6 +18,7 @@
 #include "artifacts/read_grains.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "parameters/conditions.h"
 #include "tell.h"
@@ -174,12 +176,13 @@ int main(int argc, char **argv)
     bond_text(&packing, &contacts, inputs);
 
     const struct packing_facts facts = packing_facts(&packing, &contacts, gap);
-    const struct bond_facts bonds = bond_facts(&packing);
+    struct packing body = without_auxiliary(&packing);
+    const struct bond_facts bonds = bond_facts(&body);
     const struct bond_numbers weight =
-        expected_bond_numbers(&parameters.material, &packing, &facts);
-    const struct findings findings = judge(&packing, &facts, &bonds, &weight);
+        expected_bond_numbers(&parameters.material, &body, &facts);
+    const struct findings findings = judge(&body, &facts, &bonds, &weight);
     const struct checked checked = {
-        &packing, &contacts, &facts, &bonds, &findings, &weight, &parameters.material};
+        &body, &contacts, &facts, &bonds, &findings, &weight, &parameters.material};
     const int wrong = count_wrong(&findings);
     if (invocation.tells && !invocation.quiet) tell(&checked, wrong);
     if (!invocation.tells)
@@ -190,6 +193,7 @@ int main(int argc, char **argv)
 
     json_decref(inputs);
     free((void *)contacts.pair);
+    packing_free(&body);
     packing_free(&packing);
     invocation_free(&invocation);
     return wrong ? STATUS_NO : STATUS_OK;

@@ -50,7 +50,7 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
 {
     const double r = facts->median;
     const double suction = expected_suction(material, r);
-    const struct vector side = subtract(packing->upper, packing->lower);
+    const struct vector side = subtract(facts->box.upper, facts->box.lower);
     double volume = 0;
     for (int i = 0; i < packing->n_particle; i++)
         volume += 4 * M_PI / 3 * pow(packing->radius[i], 3);
@@ -80,7 +80,7 @@ json_t *suggest(const struct material *material, const struct packing *packing,
     json_object_set_new(section, "shear_stiffness",
                         rough(2 * material->grain_modulus * r));
     json_object_set_new(section, "bond", bond);
-    const struct vector low = packing->lower, high = packing->upper;
+    const struct vector low = facts->box.lower, high = facts->box.upper;
     if (!packing->periodic[2])
         json_object_set_new(section, "held",
                             json_pack("{s:[fff],s:[fff]}", "lower", low.x, low.y,

@@ -41,7 +41,7 @@ static void tell_facts(const struct checked *checked, FILE *out)
     const struct packing_facts *facts = checked->facts;
     const struct bond_facts *bonds = checked->bonds;
     const int n_bond = checked->packing->n_bond;
-    const struct vector low = checked->packing->lower, high = checked->packing->upper;
+    const struct vector low = facts->box.lower, high = facts->box.upper;
     fprintf(out,
             "grains     %d, radius %.3g m (10 %%: %.3g, 90 %%: %.3g; %.3g to %.3g)\n",
             facts->n, facts->median, facts->tenth, facts->ninetieth, facts->smallest,
@@ -171,10 +171,10 @@ static json_t *bonds_json(const struct checked *checked)
 static json_t *box_json(const struct checked *checked)
 {
     const struct packing_facts *facts = checked->facts;
-    json_t *box = json_pack(
-        "{s:o,s:o,s:f,s:f,s:f,s:i,s:i}", "lower", point(checked->packing->lower),
-        "upper", point(checked->packing->upper), "porosity", facts->porosity, "empty",
-        facts->empty, "far", facts->far, "outside", facts->outside, "cut", facts->cut);
+    json_t *box = json_pack("{s:o,s:o,s:f,s:f,s:f,s:i,s:i}", "lower",
+                            point(facts->box.lower), "upper", point(facts->box.upper),
+                            "porosity", facts->porosity, "empty", facts->empty, "far",
+                            facts->far, "outside", facts->outside, "cut", facts->cut);
     if (facts->n) {
         json_object_set_new(box, "grains_lower", point(facts->lower));
         json_object_set_new(box, "grains_upper", point(facts->upper));

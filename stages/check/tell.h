@@ -7,8 +7,9 @@
 #include "suggest.h"
 
 // All that was found out; it owns nothing. Both outputs are made from it and from
-// nothing else, so that they say the same. FACTS, BONDS and CONTACTS are of PACKING;
-// MATERIAL is only for what is suggested. FINDINGS come sorted, the worst first.
+// nothing else, so that they say the same. PACKING has no auxiliary grains; FACTS,
+// BONDS and CONTACTS are of it, with rows and numbers of the input. MATERIAL is only
+// for what is suggested. FINDINGS come sorted, the worst first.
 struct checked {
     const struct packing *packing;
     const struct contacts *contacts;

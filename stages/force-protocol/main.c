@@ -156,7 +156,7 @@ static void check_end(const struct drying_record *record, double steps,
 }
 
 // Plain mean over the throats that may hold liquid, as K has it.
-static double mean_radius(const struct network *network, const char *path)
+static double mean_throat_radius(const struct network *network, const char *path)
 {
     double sum = 0;
     int count = 0;
@@ -179,11 +179,11 @@ static struct suction_law find_law(const struct network *network,
 {
     const double angle = parameters->contact_angle * (M_PI / 180);
     const double meniscus = 2 * parameters->surface_tension * cos(angle);
-    const struct suction_law law = {.rule = (enum suction_rule)parameters->suction,
-                                    .uniform = meniscus / mean_radius(network, path),
-                                    .meniscus = meniscus,
-                                    .contact_line =
-                                        parameters->surface_tension * sin(angle)};
+    const struct suction_law law = {
+        .rule = (enum suction_rule)parameters->suction,
+        .uniform = meniscus / mean_throat_radius(network, path),
+        .meniscus = meniscus,
+        .contact_line = parameters->surface_tension * sin(angle)};
     if (!(law.uniform * fmax(1, parameters->force_scale) <= 1e150))
         die(STATUS_BAD_DATA,
             "%s: the forces overflow at a capillary pressure of %g Pa and "

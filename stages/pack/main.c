@@ -3,8 +3,8 @@
 //
 // In this order: grains of INPUT, if the method takes any; the checkpoint; the method;
 // contacts; the check of the packing; bonds; the extra layer, which comes after the
-// bonds because it has none; then the artifact and the report. Contacts are searched
-// again after the layer, so that the measures of contacts count it.
+// bonds because it has none; then the artifact and the report. Measures are those of
+// the body without auxiliary grains, in the box that ends where it does.
 //
 // INPUT (text, a LAMMPS dump or a packing.h5) is the packing itself with import, and
 // where moving grains begin with the methods that move them; no other method takes one.
@@ -19,6 +19,7 @@
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "geometry/packing_check.h"
 #include "import.h"
@@ -151,11 +152,12 @@ static void look_at(const struct packing *packing, const struct contacts *contac
     }
 }
 
-static void write_packing(const struct packing *packing, const struct domain *domain,
-                          const struct contacts *contacts,
-                          const struct invocation *invocation, json_t *inputs,
-                          const struct pack_parameters *parameters,
-                          const struct reached *reached)
+// Measures PACKING in DOMAIN, neither of which has auxiliary grains.
+static struct packing_report measure(const struct packing *packing,
+                                     const struct domain *domain,
+                                     const struct contacts *contacts,
+                                     const struct pack_parameters *parameters,
+                                     const struct reached *reached)
 {
     const double porosity = porosity_in(domain, packing);
     if (!(porosity > -1e6))
@@ -166,6 +168,36 @@ static void write_packing(const struct packing *packing, const struct domain *do
                        reached->dynamic && parameters->dynamics.friction > 0);
     report_number(&entry, "/summary/porosity", porosity);
     report_number(&entry, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
+    return entry;
+}
+
+// The same below auxiliary layers, in the part of the domain that they leave.
+static struct packing_report measure_body(const struct packing *packing,
+                                          const struct domain *domain,
+                                          const struct pack_parameters *parameters,
+                                          const struct reached *reached)
+{
+    struct packing body = without_auxiliary(packing);
+    const struct window box = box_without_auxiliary(packing);
+    struct domain left = *domain;
+    body.lower = left.lower = box.lower;
+    body.upper = left.upper = box.upper;
+    struct contacts contacts = find_contacts(&body, parameters->touching_gap);
+    struct packing_report entry = measure(&body, &left, &contacts, parameters, reached);
+    free((void *)contacts.pair);
+    packing_free(&body);
+    return entry;
+}
+
+static void write_packing(const struct packing *packing, const struct domain *domain,
+                          const struct contacts *contacts,
+                          const struct invocation *invocation, json_t *inputs,
+                          const struct pack_parameters *parameters,
+                          const struct reached *reached)
+{
+    struct packing_report entry =
+        packing->kind ? measure_body(packing, domain, parameters, reached)
+                      : measure(packing, domain, contacts, parameters, reached);
 
     struct artifact *artifact = artifact_create("packing", invocation->output);
     artifact_put_packing(artifact, packing);
@@ -200,8 +232,8 @@ static void take_slab(const struct pack_parameters *parameters, struct domain *d
     if (status) die(status, "%s", reason.text);
 }
 
-// The domain grows with the box, so that the porosity counts the layer. The layer has
-// no bonds: it only gives the boundary layer its nodes.
+// The domain grows with the box. The layer has no bonds: it only gives the boundary
+// layer its nodes.
 static void make_layer(struct domain *domain, int wall, struct packing *packing)
 {
     struct reason reason;
@@ -287,11 +319,7 @@ int main(int argc, char **argv)
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);
-    if (parameters.extra_layer) {
-        make_layer(&domain, parameters.extra_side, &packing);
-        free((void *)contacts.pair);
-        contacts = find_contacts(&packing, parameters.touching_gap);
-    }
+    if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
     if (parameters.method != METHOD_IMPORT)
         packing.n_body = domain_bodies(&domain, packing.body);
     write_packing(&packing, &domain, &contacts, &invocation, inputs, &parameters,

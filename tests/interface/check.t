@@ -265,4 +265,22 @@ for words in (["pack", "-q", "--set", "method=import", "-o", at("endless.h5")], 
     ok(ended.returncode == 65 and "line 1: must be four numbers" in ended.stderr,
        f"{words[0]} of text without end, and without grains", ended.stderr)
 
+# Below an extra layer: the same facts as without it, in its box; rows are those of the input.
+run("pack", "-q", *sets("counts=[6,6,6]"), "-o", at("bare"))
+run("pack", "-q", *sets("counts=[6,6,6]", "extra_layer=true", "extra_side=+x"), "-o", at("layered"))
+with h5py.File(at("layered"), "r+") as file:  # the layer first, and bonds to it
+    for name in "position", "radius", "kind":
+        file[f"particles/{name}"][...] = np.roll(file[f"particles/{name}"][:], 36, axis=0)
+    bonds = np.vstack([[[0, 36]], file["bonds/particles"][:] + 36])
+    del file["bonds/particles"]
+    file["bonds/particles"] = bonds.astype("<i4")
+facts = lambda report: {k: v for k, v in report.items() if k not in ("inputs", "sha256")}
+bare, layered = check(at("bare")), check(at("layered"))
+ok(facts(layered[1]) == facts(bare[1]) and layered[2] and bare[1]["box"]["upper"] != [0, 0, 0],
+   "an extra layer does not count", (layered[1]["box"], bare[1]["box"], layered[1]["bonds"]))
+with h5py.File(at("layered"), "r+") as file:
+    file["particles/position"][40] = file["particles/position"][41]
+_, report, _ = check(at("layered"))
+ok("row 41: has the same centre as row 40 (1 such pair)" in report["findings"][0]["text"],
+   "rows are those of the input", report["findings"])
 done()

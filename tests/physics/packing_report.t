@@ -124,6 +124,37 @@ with scratch() as folder:
     ok(left_out.returncode == 65 and b"left out" in left_out.stderr,
        "and says what was left out")
 
+    # Below an extra layer, which is not part of the body: on a lattice, where the box of the body is that
+    # without a layer, the same report; else by numpy, in the box that ends with the grains.
+    for shape in ["counts=[4,3,5]"], ["counts=[5,1,4]", "dimensions=2", "method=square"], \
+            ["counts=[4,3,5]", "periodic=[true,true,false]"]:
+        shape = ["radius=0.5", "check=none", *shape]
+        bare, _ = pack("bare", *shape)
+        for side in ["-z", "+z"] if "periodic" in shape[-1] else ["-x", "+x", "-z", "+z"]:
+            layered, file = pack("layered", *shape, "extra_layer=true", f"extra_side={side}")
+            again, other = pack("again", "method=import", "check=none", inputs=[at("layered")])
+            ok(layered == bare and again == bare and (file["particles/kind"][:] == 1).any()
+               and np.array_equal(other["bonds/particles"], file["bonds/particles"]),
+               f"{' '.join(shape[2:])}: a layer at {side} is not measured, nor bonded on import")
+        if "periodic" not in shape[-1]:
+            both, file = pack("both", "method=import", "check=none", "extra_layer=true", "extra_side=-x", inputs=[at("layered")])
+            ok(both == bare, f"{' '.join(shape[2:])}: nor are two", (both["summary"], bare["summary"]))
+    inner = random.uniform(4, 6, (30, 3))
+    np.savetxt(at("inner.txt"), np.column_stack([inner, np.full(30, 0.1)]), fmt="%.17g")
+    for title, words, inputs, edge in [
+            ("unequal grains", ["method=random_sequential", "upper=[4e-6,4e-6,4e-6]", "count=90", "sizes.distribution=uniform",
+                                "sizes.smallest=1e-7", "sizes.largest=4e-7"], [], 4e-6),
+            ("grains far from all sides", ["method=import", "lower=[0,0,0]", "upper=[10,10,10]"], [at("inner.txt")], 10)]:
+        said, file = pack("uneven", *words, "touching_gap=0.3", "check=none", "extra_layer=true", inputs=inputs)
+        solid = file["particles/kind"][:] == 0
+        x, r = file["particles/position"][:][solid], file["particles/radius"][:][solid]
+        volume = 4 / 3 * np.pi * (r**3).sum()
+        touch = np.linalg.norm(x[:, None] - x, axis=2) <= 1.3 * (r[:, None] + r)
+        contacts, summary = (touch.sum() - len(r)) / 2, said["summary"]
+        ok(not solid.all() and np.isclose(summary["porosity"], 1 - volume / (edge**2 * (x[:, 2] + r).max()), rtol=1e-12)
+           and np.isclose(summary["mean_radius"], r.mean()) and summary["contacts"] == contacts > 0
+           and np.isclose(summary["coordination"], 2 * contacts / len(r)), f"{title} below a layer", summary)
+
     for name in "grains", "one":
         drawn = subprocess.run(["pipelines/figures/packing", at(name), at("figure.svg")],
                                capture_output=True)

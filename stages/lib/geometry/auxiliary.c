@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that stay keep their order; a bond with one that goes is dropped.
+//
+// A side of the box has a layer along it if centres of auxiliary grains lie beyond all
+// other grains there. Those of a layer that is wider than the other grains lie beyond
+// these on its edges, too: so the side with the most such grains is taken first, and
+// each grain counts at one side.
 #include "geometry/auxiliary.h"
 
 #include "basics/memory.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,4 +65,75 @@ void copy_without_auxiliary(const struct packing *packing, const void *from,
         memcpy(place, value, size);
         place += size;
     }
+}
+
+// ---- the box ------------------------------------------------------------------------
+
+// Of the lower (upper) wall across AXIS: the coordinate times -1 (1).
+static double outwards(int wall, double x)
+{
+    return wall % 2 ? x : -x;
+}
+
+// Where the grains that are not auxiliary end towards WALL, outwards; -HUGE_VAL
+// without any.
+static double end_of_grains(const struct packing *packing, int wall)
+{
+    double end = -HUGE_VAL;
+    for (int i = 0; i < packing->n_particle; i++)
+        if (!is_auxiliary(packing, i))
+            end = fmax(end, outwards(wall, component(packing->position[i], wall / 2)) +
+                                packing->radius[i]);
+    return end;
+}
+
+// How many of the grains that are LEFT lie beyond END at WALL; if TAKEN they are left
+// no more.
+static int count_beyond(const struct packing *packing, int wall, double end,
+                        uint8_t *left, bool taken)
+{
+    int count = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        const double at = outwards(wall, component(packing->position[i], wall / 2));
+        if (!left[i] || !(at > end)) continue;
+        count++;
+        if (taken) left[i] = 0;
+    }
+    return count;
+}
+
+// The wall with most of the grains that are LEFT beyond its END (WALL_COUNT); -1: none
+// lies beyond one.
+static int most_covered(const struct packing *packing, const double *end, uint8_t *left)
+{
+    int most = 0, found = -1;
+    for (int wall = 0; wall < WALL_COUNT; wall++) {
+        if (packing->periodic[wall / 2]) continue;
+        const int count = count_beyond(packing, wall, end[wall], left, false);
+        if (count <= most) continue;
+        most = count;
+        found = wall;
+    }
+    return found;
+}
+
+struct window box_without_auxiliary(const struct packing *packing)
+{
+    struct window box = {packing->lower, packing->upper};
+    double end[WALL_COUNT];
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        end[wall] = end_of_grains(packing, wall);
+    if (!packing->kind || isinf(end[0])) return box;
+    uint8_t *left = NEW_ARRAY(uint8_t, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        left[i] = is_auxiliary(packing, i);
+    for (int wall; (wall = most_covered(packing, end, left)) >= 0;) {
+        count_beyond(packing, wall, end[wall], left, true);
+        struct vector *corner = wall % 2 ? &box.upper : &box.lower;
+        const double other = component(wall % 2 ? box.lower : box.upper, wall / 2);
+        if (end[wall] + outwards(wall, -other) > 0) // not where grains lie outside
+            set_component(corner, wall / 2, outwards(wall, end[wall]));
+    }
+    free(left);
+    return box;
 }

@@ -18,7 +18,15 @@
 struct contacts find_contacts(const struct packing *packing, double gap)
 {
     struct contacts contacts;
-    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &contacts.count);
+    int n = 0, all;
+    int32_t(*pair)[2] = neighbour_pairs(packing, gap, &all);
+    for (int k = 0; k < all; k++) {
+        const int32_t i = pair[k][0], j = pair[k][1];
+        if (is_auxiliary(packing, i) || is_auxiliary(packing, j)) continue;
+        pair[n][0] = i;
+        pair[n++][1] = j;
+    }
+    contacts.count = n;
     contacts.pair = (const int32_t(*)[2])pair;
     return contacts;
 }

@@ -7,10 +7,10 @@
 
 #include "geometry/porosity.h"
 
-// Pairs of grains whose surfaces are at most GAP radius sums apart. The caller frees
-// their pair. Sorted, lower grain first; GAP of 0 finds those that overlap or touch to
-// the last digit: rounding parts grains of a lattice, which want 1e-9 or so.
-// O(n_particle).
+// Pairs of grains whose surfaces are at most GAP radius sums apart; auxiliary grains
+// touch nothing. The caller frees their pair. Sorted, lower grain first; GAP of 0 finds
+// those that overlap or touch to the last digit: rounding parts grains of a lattice,
+// which want 1e-9 or so. O(n_particle).
 struct contacts find_contacts(const struct packing *packing, double gap);
 
 // Bonds them all, and no others: what bonds there were go. Copies the pairs: CONTACTS

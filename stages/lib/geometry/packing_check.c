@@ -153,8 +153,7 @@ static void judge_overlaps(const struct packing_facts *facts, struct findings *f
 
 // `far` is how far from a surface a place must be to count as empty; where the grains
 // reach all walls, the empty part is inside.
-static void judge_room(const struct packing *packing, const struct packing_facts *facts,
-                       struct findings *findings)
+static void judge_room(const struct packing_facts *facts, struct findings *findings)
 {
     const struct vector low = facts->lower, high = facts->upper;
     if (facts->porosity < 0)
@@ -169,9 +168,10 @@ static void judge_room(const struct packing *packing, const struct packing_facts
     if (facts->empty <= EMPTY_MOST) return;
     bool fills = true;
     for (int axis = 0; axis < 3; axis++)
-        fills = fills &&
-                component(low, axis) - component(packing->lower, axis) <= facts->far &&
-                component(packing->upper, axis) - component(high, axis) <= facts->far;
+        fills =
+            fills &&
+            component(low, axis) - component(facts->box.lower, axis) <= facts->far &&
+            component(facts->box.upper, axis) - component(high, axis) <= facts->far;
     if (fills)
         add_finding(findings, FINDING_WRONG, "empty",
                     "%.0f %% of the box is more than %.3g m from every grain: a body "
@@ -225,7 +225,7 @@ void judge_packing(const struct packing *packing, const struct packing_facts *fa
     if (!facts->n) return;
     judge_units(facts, findings);
     judge_places(facts, findings);
-    judge_room(packing, facts, findings);
+    judge_room(facts, findings);
     judge_width(packing, facts, findings);
     judge_overlaps(facts, findings);
     judge_plane(facts, findings);

@@ -9,14 +9,15 @@
 #include "geometry/porosity.h"
 
 // What is found in a packing. Rows are those of /particles; -1 where there is none.
-// Auxiliary grains count only as things that fill the box.
+// Auxiliary grains do not count, nor the part of the box that they fill.
 struct packing_facts {
+    struct window box;               // without auxiliary layers, m
     int n;                           // grains
     double smallest, largest;        // radius, m
     double tenth, median, ninetieth; // radii that 10, 50 and 90 % do not exceed, m
     struct vector lower, upper;      // where the grains' surfaces end, m
     double porosity; // overlaps count twice as solid, as does what sticks out
-    double empty;    // share of the box far from every grain; 0 where there is a body
+    double empty;    // share of `box` far from every grain; 0 where there is a body
     double far;      // how far that is from a surface, m
     int outside, first_outside; // grains wholly beyond a wall of the box
     int centres_outside, first_centre_outside;

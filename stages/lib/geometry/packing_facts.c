@@ -12,6 +12,7 @@
 
 #include "basics/memory.h"
 #include "basics/sorted.h"
+#include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "geometry/neighbours.h"
 
@@ -83,11 +84,12 @@ static void measure_walls(const struct packing *packing, struct packing_facts *f
 
 static void measure_extent(const struct packing *packing, struct packing_facts *facts)
 {
-    const struct vector edge = subtract(packing->upper, packing->lower);
+    const struct vector edge = subtract(facts->box.upper, facts->box.lower);
     facts->porosity = 1;
     for (int axis = 0; axis < 3; axis++) {
         double low = HUGE_VAL, high = -HUGE_VAL, first = HUGE_VAL, last = -HUGE_VAL;
         for (int i = 0; i < packing->n_particle; i++) {
+            if (is_auxiliary(packing, i)) continue;
             const double x = component(packing->position[i], axis);
             low = fmin(low, x - packing->radius[i]);
             high = fmax(high, x + packing->radius[i]);
@@ -100,7 +102,7 @@ static void measure_extent(const struct packing *packing, struct packing_facts *
         if (flat && facts->plane != 1) facts->plane = axis;
     }
     for (int i = 0; i < packing->n_particle; i++) {
-        const double r = packing->radius[i];
+        const double r = is_auxiliary(packing, i) ? 0 : packing->radius[i];
         facts->porosity -= 4 * M_PI / 3 * (r / edge.x) * (r / edge.y) * (r / edge.z);
     }
 }
@@ -110,7 +112,8 @@ static void measure_extent(const struct packing *packing, struct packing_facts *
 // Places in the middles of equal cells of the box.
 struct places {
     int count[3];
-    double step[3]; // m
+    double step[3];      // m
+    struct vector lower; // corner of the box
     uint8_t *filled;
 };
 
@@ -121,7 +124,7 @@ static void fill_around(const struct packing *packing, int i, double reach,
     double at[3];
     for (int axis = 0; axis < 3; axis++) {
         at[axis] =
-            (component(packing->position[i], axis) - component(packing->lower, axis)) /
+            (component(packing->position[i], axis) - component(places->lower, axis)) /
                 places->step[axis] -
             0.5;
         const double half = reach / places->step[axis];
@@ -153,10 +156,10 @@ static void fill_around(const struct packing *packing, int i, double reach,
 static void measure_empty(const struct packing *packing, struct packing_facts *facts)
 {
     if (!facts->n || packing->n_body) return;
-    const struct vector edge = subtract(packing->upper, packing->lower);
+    const struct vector edge = subtract(facts->box.upper, facts->box.lower);
     const double room = cbrt(edge.x) * cbrt(edge.y) * cbrt(edge.z) / cbrt(facts->n);
     facts->far = fmax(2 * facts->median, room);
-    struct places places;
+    struct places places = {.lower = facts->box.lower};
     size_t all = 1;
     for (int axis = 0; axis < 3; axis++) {
         const double cells = 2 * component(edge, axis) / facts->far;
@@ -168,7 +171,8 @@ static void measure_empty(const struct packing *packing, struct packing_facts *f
     if (all > 64 * (size_t)facts->n + 4096) return; // thinner than its grains
     places.filled = NEW_ARRAY(uint8_t, all);
     for (int i = 0; i < packing->n_particle; i++)
-        fill_around(packing, i, packing->radius[i] + facts->far, &places);
+        if (!is_auxiliary(packing, i))
+            fill_around(packing, i, packing->radius[i] + facts->far, &places);
     size_t filled = 0;
     for (size_t k = 0; k < all; k++)
         filled += places.filled[k];
@@ -184,7 +188,6 @@ static void measure_pairs(const struct packing *packing,
     uint8_t *overlaps = NEW_ARRAY(uint8_t, packing->n_particle);
     for (int k = 0; k < contacts->count; k++) {
         const int i = contacts->pair[k][0], j = contacts->pair[k][1];
-        if (is_auxiliary(packing, i) || is_auxiliary(packing, j)) continue;
         const double a = packing->radius[i], b = packing->radius[j];
         const double apart = norm(nearest_image(packing, i, j));
         const double overlap = (a + b - apart) / fmin(a, b);
@@ -215,7 +218,8 @@ static void count_free(const struct packing *packing, const struct contacts *con
 struct packing_facts packing_facts(const struct packing *packing,
                                    const struct contacts *contacts, double gap)
 {
-    struct packing_facts facts = {.first_outside = -1,
+    struct packing_facts facts = {.box = box_without_auxiliary(packing),
+                                  .first_outside = -1,
                                   .first_centre_outside = -1,
                                   .deepest = -1,
                                   .same = {-1, -1},
