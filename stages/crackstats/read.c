@@ -11,10 +11,10 @@
 // rise, so one walk along them counts the cracks under loads that did not come to rest;
 // it needs check_cracks to have passed, or it would walk beyond the last load.
 //
-// Optional: /weight_cracks/bond and /earlier_cracks/bond (none), /particles/held,
-// /snapshots/dryness (NULL: not known).
+// Optional: /particles/held, /snapshots/dryness (NULL: not known).
 #include "read.h"
 
+#include "artifacts/cracks.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 
@@ -47,20 +47,6 @@ static void read_unsettled(struct run *run, const struct artifact *response,
     free(settled);
 }
 
-// Adds the bonds of DATASET, if there is one, to those broken before.
-static void read_before(struct run *run, const struct artifact *response,
-                        const char *dataset)
-{
-    if (!artifact_has_dataset(response, dataset)) return;
-    int n;
-    int32_t *bond = artifact_get(response, dataset, &n);
-    run->before =
-        reallocate(run->before, (size_t)run->n_before + (size_t)n, sizeof *bond);
-    for (int k = 0; k < n; k++)
-        run->before[run->n_before++] = bond[k];
-    free(bond);
-}
-
 // Bonds never heal, and nothing breaks after the end.
 static void check_cracks(const struct run *run, const char *path)
 {
@@ -81,13 +67,16 @@ static void check_cracks(const struct run *run, const char *path)
 
 struct run read_run(const struct artifact *response)
 {
-    struct run run = {.packing = artifact_get_packing(response)};
-    run.bond = artifact_get(response, "/cracks/bond", &run.n_crack);
-    run.time = artifact_get(response, "/cracks/time", NULL);
-    run.saturation = artifact_get(response, "/cracks/saturation", NULL);
-    run.mode = artifact_get(response, "/cracks/mode", NULL);
-    read_before(&run, response, "/earlier_cracks/bond");
-    read_before(&run, response, "/weight_cracks/bond");
+    struct cracks cracks = artifact_get_cracks(response);
+    struct run run = {.packing = artifact_get_packing(response),
+                      .n_crack = cracks.n,
+                      .bond = cracks.bond,
+                      .time = cracks.time,
+                      .saturation = cracks.saturation,
+                      .mode = cracks.mode,
+                      .n_before = cracks.n_before,
+                      .before = cracks.bond_before};
+    free(cracks.mode_before);
     if (artifact_has_dataset(response, "/particles/held"))
         run.held = artifact_get(response, "/particles/held", NULL);
     run.first_period_end =

@@ -20,6 +20,7 @@
 //                                   snapshot           force
 #include "series.h"
 
+#include "artifacts/cracks.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "frames.h"
@@ -147,55 +148,25 @@ static void forces_series(const struct artifact *artifact, struct frames *frames
 
 // Cracks so far: per contact -1 no bond, 0 whole, 1 normal crack, 2 shear crack.
 struct crack_view {
-    int n_contact, n_crack;
+    int n_contact;
     int32_t (*contact)[2];
-    int32_t *crack_bond;
-    uint8_t *crack_mode;
-    double *crack_time;
+    struct cracks cracks;
     double *state; // (n_contact)
 };
-
-// What had broken before, by earlier replays or the weight alone, is from the start.
-static void add_earlier_cracks(struct crack_view *view, const struct artifact *artifact,
-                               const char *bonds, const char *modes)
-{
-    if (!artifact_has_dataset(artifact, bonds)) return;
-    int n;
-    int32_t *bond = artifact_get(artifact, bonds, &n);
-    uint8_t *mode = artifact_get(artifact, modes, NULL);
-    const size_t size = (size_t)view->n_crack + (size_t)n;
-    view->crack_bond = reallocate(view->crack_bond, size, sizeof *view->crack_bond);
-    view->crack_mode = reallocate(view->crack_mode, size, sizeof *view->crack_mode);
-    view->crack_time = reallocate(view->crack_time, size, sizeof *view->crack_time);
-    for (int k = 0; k < n; k++, view->n_crack++) {
-        view->crack_bond[view->n_crack] = bond[k];
-        view->crack_mode[view->n_crack] = mode[k];
-        view->crack_time[view->n_crack] = -INFINITY;
-    }
-    free(bond);
-    free(mode);
-}
 
 // Reads what the view needs; the caller frees it with crack_view_free.
 static struct crack_view crack_view_of(const struct artifact *artifact)
 {
-    struct crack_view view = {0};
+    struct crack_view view = {.cracks = artifact_get_cracks(artifact)};
     view.contact = artifact_get(artifact, "/contacts/particles", &view.n_contact);
-    view.crack_bond = artifact_get(artifact, "/cracks/bond", &view.n_crack);
-    view.crack_mode = artifact_get(artifact, "/cracks/mode", NULL);
-    view.crack_time = artifact_get(artifact, "/cracks/time", NULL);
-    add_earlier_cracks(&view, artifact, "/earlier_cracks/bond", "/earlier_cracks/mode");
-    add_earlier_cracks(&view, artifact, "/weight_cracks/bond", "/weight_cracks/mode");
     view.state = NEW_ARRAY(double, view.n_contact);
     return view;
 }
 
 static void crack_view_free(struct crack_view *view)
 {
+    cracks_free(&view->cracks);
     free(view->contact);
-    free(view->crack_bond);
-    free(view->crack_mode);
-    free(view->crack_time);
     free(view->state);
 }
 
@@ -208,6 +179,12 @@ static int contact_of_bond(const struct crack_view *view, const int32_t bond[2])
     return found ? (int)(found - (const int32_t(*)[2])view->contact) : -1;
 }
 
+static void mark_broken(struct crack_view *view, const int32_t bond[2], int mode)
+{
+    const int c = contact_of_bond(view, bond);
+    if (c >= 0) view->state[c] = 1 + mode;
+}
+
 // From the start each time: frames are few.
 static void update_cracks(struct crack_view *view, const struct packing *packing,
                           double time)
@@ -218,11 +195,13 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
         const int c = contact_of_bond(view, packing->bond[b]);
         if (c >= 0) view->state[c] = 0;
     }
-    for (int k = 0; k < view->n_crack; k++) {
-        const int c = contact_of_bond(view, packing->bond[view->crack_bond[k]]);
-        if (c >= 0 && view->crack_time[k] <= time)
-            view->state[c] = 1 + view->crack_mode[k];
-    }
+    const struct cracks *cracks = &view->cracks;
+    for (int k = 0; k < cracks->n; k++)
+        if (cracks->time[k] <= time)
+            mark_broken(view, packing->bond[cracks->bond[k]], cracks->mode[k]);
+    for (int k = 0; k < cracks->n_before; k++) // by earlier replays, or the weight
+        mark_broken(view, packing->bond[cracks->bond_before[k]],
+                    cracks->mode_before[k]);
 }
 
 // Displacements of the grains; forces, cracks and liquid bridges at the contacts.

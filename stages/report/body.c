@@ -202,6 +202,24 @@ static void put_throats(struct arrays *arrays, const struct run *run,
 
 // ---- bonds --------------------------------------------------------------------------
 
+// Where bonds were broken when the replay began, "bond.earlier" says which: their key
+// is 0, but they are no cracks of this replay.
+static void put_bonds_before(struct arrays *arrays, const struct run *run,
+                             uint32_t *key, uint32_t *mode)
+{
+    if (!run->n_before) return;
+    const int n = run->packing.n_bond;
+    uint32_t *earlier = NEW_ARRAY(uint32_t, n);
+    for (int k = 0; k < run->n_before; k++) {
+        const int bond = run->bond_before[k];
+        key[bond] = 0;
+        mode[bond] = run->mode_before[k];
+        earlier[bond] = 1;
+    }
+    arrays_put(arrays, "bond.earlier", earlier, (size_t)n, false);
+    free(earlier);
+}
+
 // The page draws a bond until its key, and its crack from then on.
 static void put_bonds(struct arrays *arrays, const struct run *run,
                       const struct course *course)
@@ -218,6 +236,7 @@ static void put_bonds(struct arrays *arrays, const struct run *run,
         key[run->crack_bond[k]] = key_of(course, run->crack_time[k]);
         mode[run->crack_bond[k]] = run->crack_mode[k];
     }
+    put_bonds_before(arrays, run, key, mode);
     arrays_put(arrays, "bond.first", first, (size_t)n, true);
     arrays_put(arrays, "bond.second", second, (size_t)n, false);
     arrays_put(arrays, "bond.breaks", key, (size_t)n, false);

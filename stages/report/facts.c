@@ -8,6 +8,7 @@
 //
 //     first crack       /cracks of the response, row 0; they are in the order of time
 //     modes             /cracks/mode: 0 tension, 1 shear
+//     broken before     /earlier_cracks and /weight_cracks of the response
 //     rates             /history/rate of the drying at the rows of the course; of its
 //                       /summary first_period_end_time and _saturation, and
 //                       breakthrough_saturation
@@ -186,6 +187,16 @@ static void put_first_crack(FILE *page, const struct run *run,
              100 * share_of_box(packing, first, 1), more);
 }
 
+static void put_broken_before(FILE *page, const struct run *run)
+{
+    if (run->n_before)
+        put_fact(page, nowhere, "Broken before",
+                 "%d bond%s, in replays that this one goes on from or under the "
+                 "weight: no crack%s of this replay",
+                 run->n_before, run->n_before == 1 ? "" : "s",
+                 run->n_before == 1 ? "" : "s");
+}
+
 static void put_modes(FILE *page, const struct run *run)
 {
     if (!run->of[RESPONSE]) return;
@@ -361,6 +372,7 @@ void put_facts(FILE *page, const struct run *run, const struct course *course,
     fputs("<dl class=\"facts\">\n", page);
     put_first_crack(page, run, course);
     put_modes(page, run);
+    put_broken_before(page, run);
     put_rates(page, run, course);
     put_open_sides(page, run);
     put_forces(page, run, course, body);

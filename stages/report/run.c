@@ -9,6 +9,7 @@
 // hand is taken on trust; the number of grains must agree in any case.
 #include "run.h"
 
+#include "artifacts/cracks.h"
 #include "artifacts/document.h"
 #include "basics/memory.h"
 #include "basics/status.h"
@@ -198,11 +199,15 @@ static void read_cracks(struct run *run)
 {
     const struct artifact *response = run->motion ? run->motion : run->of[RESPONSE];
     if (!response) return;
-    run->crack_bond = artifact_get(response, "/cracks/bond", &run->n_crack);
-    run->crack_time = artifact_get(response, "/cracks/time", NULL);
-    if (!run->motion)
-        run->crack_saturation = artifact_get(response, "/cracks/saturation", NULL);
-    run->crack_mode = artifact_get(response, "/cracks/mode", NULL);
+    const struct cracks cracks = artifact_get_cracks(response);
+    run->n_crack = cracks.n;
+    run->crack_bond = cracks.bond;
+    run->crack_time = cracks.time;
+    run->crack_saturation = cracks.saturation;
+    run->crack_mode = cracks.mode;
+    run->n_before = cracks.n_before;
+    run->bond_before = cracks.bond_before;
+    run->mode_before = cracks.mode_before;
 }
 
 // A motion has velocities in place of forces: the arrows of the page are these.
@@ -265,6 +270,8 @@ void close_run(struct run *run)
     free(run->crack_time);
     free(run->crack_saturation);
     free(run->crack_mode);
+    free(run->bond_before);
+    free(run->mode_before);
     free(run->load_time);
     free(run->load_saturation);
     free(run->load);

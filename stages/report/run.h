@@ -30,6 +30,9 @@ struct run {
     int32_t *crack_bond; // (n_crack)
     double *crack_time, *crack_saturation;
     uint8_t *crack_mode;
+    int n_before;         // bonds broken when the replay began
+    int32_t *bond_before; // (n_before)
+    uint8_t *mode_before;
 
     // Arrows: forces of the liquid or, of a flow, of the fluid (N); velocities (m/s).
     int n_load;

@@ -76,8 +76,8 @@ with h5py.File(at("drying.h5")) as file:
 ok("<b>dry</b>: gravity, Knudsen effect" in text, "what was left out")
 
 
-def places_of(text):
-    """Centres and radii of grains as the page has them, m, read without its script."""
+def arrays_of(text):
+    """What the page says of its numbers, and these, read without its script."""
     meta = json.loads(re.search(r'id="meta">(.*?)</script>', text, re.S)[1])
     data = zlib.decompress(base64.b64decode(re.search(r'id="data">(.*?)</script>', text, re.S)[1]))
     arrays, begin = {}, 0
@@ -86,6 +86,12 @@ def places_of(text):
         planes = np.frombuffer(data, "u1", n * entry["planes"], begin).reshape(entry["planes"], n)
         arrays[entry["name"]] = sum(plane.astype("u4") << np.uint32(8 * k) for k, plane in enumerate(planes))
         begin += planes.size
+    return meta, arrays
+
+
+def places_of(text):
+    """Centres and radii of grains as the page has them, m."""
+    meta, arrays = arrays_of(text)
     step, origin = meta["scales"]["step"], np.array(meta["scales"]["origin"])
     return origin + step * np.array([arrays[f"grain.{x}"] for x in "xyz"]).T, step * arrays["grain.radius"]
 
@@ -95,6 +101,31 @@ with h5py.File(at("packing.h5")) as file:
 shown, shown_radius = places_of(text)
 error = max(np.abs(shown - position).max(), np.abs(shown_radius - radius).max()) / radius.min()
 ok(error < 1e-3, "places are within a thousandth of a grain", error)
+
+# ---- a replay that goes on from another, with weight ---------------------------------------
+
+shutil.copy(at("response.h5"), at("goes-on.h5"))
+with h5py.File(at("goes-on.h5"), "r+") as file:
+    whole = np.setdiff1d(np.arange(len(file["bonds/particles"])), file["cracks/bond"])
+    before = {"earlier_cracks": (whole[[3, 9, 20]], [0, 1, 1]), "weight_cracks": (whole[[5]], [0])}
+    for group, (bond, mode) in before.items():
+        file[f"{group}/bond"], file[f"{group}/mode"] = bond.astype("<i4"), np.array(mode, "u1")
+    of_contact = {tuple(pair): k for k, pair in enumerate(file["contacts/particles"][:])}
+    contact = [of_contact[tuple(pair)] for pair in file["bonds/particles"][:]]
+    last = len(file["snapshots/time"]) - 1
+run("inspect", "--vtk", at("goes-on"), at("goes-on.h5"))
+with open(at("goes-on.html"), "wb") as file:
+    file.write(run("report", at("goes-on.h5"), "-o", "-"))
+goes_on = read(at("goes-on.html")).decode()
+meta, arrays = arrays_of(goes_on)
+key = arrays["bond.breaks"]
+for frame, now in (0, key == 0), (last, key < 65535):
+    drawn = np.array(re.search(r'Name="crack".*?>\n(.*?)</', read(at(f"goes-on-{frame:04}.vtu")).decode(), re.S)[1].split(), float)
+    ok(np.array_equal(np.where(now, 1 + arrays["bond.mode"], 0), drawn[contact]),
+       f"bonds that had broken before are drawn as inspect draws them, frame {frame}")
+ok(np.array_equal(np.flatnonzero(arrays.get("bond.earlier", [])), np.sort(np.concatenate([bond for bond, _ in before.values()])))
+   and "4 bonds, in replays that this one goes on from or under the weight" in goes_on, "and said to be no cracks of this replay")
+ok("bond.earlier" not in arrays_of(text)[1] and "Broken before" not in text, "where there are none nothing is said of them")
 
 # ---- what it refuses ----------------------------------------------------------------------
 
@@ -333,6 +364,12 @@ NAMELESS = """[...document.querySelectorAll('canvas, svg, button, input, select,
 ok(browser.evaluate(NAMELESS) == [], "pictures and controls have words for those who do not see them", browser.evaluate(NAMELESS))
 contrast = browser.evaluate(CONTRAST)
 ok(contrast[0] >= 4.5, "text stands out from what is behind it", contrast)
+browser.open(at("goes-on.html"))
+browser.evaluate("page.course.set(0)")
+said = browser.evaluate("[element('now').textContent, page.cracks.filter((c) => c.earlier).map((c) => describeCrack(page.body, page.course, c).history[0]),"
+                        f" describeGrain(page.body, page.course, page.body.bond.first[{whole[9]}]).history]")
+ok(said[0].endswith("in shear, 4 before") and sorted(said[1]) == 2 * ["had broken before, in shear"] + 2 * ["had broken before, in tension"]
+   and any("had broken before, in shear" in line for line in said[2]), "bonds that had broken before, in words", said)
 browser.open(at("hostile.html"))
 ok(browser.evaluate("document.querySelectorAll('script').length") == 3 and browser.evaluate("document.title") == HOSTILE,
    "the hostile page shows its title as it is")

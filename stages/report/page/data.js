@@ -81,7 +81,7 @@ function bodyOf(meta, arrays) {
     }),
     bond: {
       first: arrays["bond.first"] || [], second: second(arrays["bond.first"], arrays["bond.second"]),
-      breaks: arrays["bond.breaks"], mode: arrays["bond.mode"], n: (arrays["bond.first"] || []).length,
+      breaks: arrays["bond.breaks"], mode: arrays["bond.mode"], earlier: arrays["bond.earlier"] || [], n: (arrays["bond.first"] || []).length,
     },
     lastKey: Math.max(0, meta.rows - 1) * meta.keysARow, place: { from, scale },
   };
@@ -105,7 +105,7 @@ function cracksOf(body) {
     const share = 0.5 + (grain.radius[i] - grain.radius[j]) / (2 * distance);
     cracks.push({
       bond: b, at: along.map((d, axis) => grain.at[3 * i + axis] + share * d), normal: along.map((d) => d / distance),
-      radius: meta.bondRadius * Math.min(grain.radius[i], grain.radius[j]), key: bond.breaks[b], mode: bond.mode[b],
+      radius: meta.bondRadius * Math.min(grain.radius[i], grain.radius[j]), key: bond.breaks[b], mode: bond.mode[b], earlier: Boolean(bond.earlier[b]),
     });
   }
   return cracks;

@@ -22,6 +22,9 @@ function meta_has(name, dataset) {
   return within[`/${dataset.split("/")[1]}`].test(name);
 }
 
+// EARLIER: before the run began.
+const brokeText = (course, key, mode, earlier) => (earlier ? `had broken before, in ${MODES[mode]}` : `broke in ${MODES[mode]} at ${whenText(course, key)}`);
+
 function describeGrain(body, course, i) {
   const { grain, bond, arrays, meta } = body, history = [];
   let bonds = 0, whole = 0;
@@ -30,7 +33,7 @@ function describeGrain(body, course, i) {
     bonds++;
     if (bond.breaks[b] > course.key) whole++;
     if (bond.breaks[b] === NEVER) continue;
-    history.push([bond.breaks[b], `bond with grain ${bond.first[b] === i ? bond.second[b] : bond.first[b]} broke in ${MODES[bond.mode[b]]} at ${whenText(course, bond.breaks[b])}`]);
+    history.push([bond.breaks[b], `bond with grain ${bond.first[b] === i ? bond.second[b] : bond.first[b]} ${brokeText(course, bond.breaks[b], bond.mode[b], bond.earlier[b])}`]);
   }
   const rows = [["centre", placeText(body, grain.at, i)], ["diameter", withUnit(2 * grain.radius[i] * body.unit, "m")]];
   if (bonds) rows.push(["bonds", `${whole} of ${bonds} whole`]);
@@ -58,7 +61,7 @@ function describeThroat(body, course, t) {
 function describeCrack(body, course, crack) {
   const i = body.bond.first[crack.bond], j = body.bond.second[crack.bond];
   return { title: `Bond ${crack.bond}`, rows: [["grains", `${i} and ${j}`], ["centre", placeText(body, crack.at, 0)]],
-    history: [`broke in ${MODES[crack.mode]} at ${whenText(course, crack.key)}`], command: printing("/bonds/particles", body.meta.files, `.[${crack.bond}]`) };
+    history: [brokeText(course, crack.key, crack.mode, crack.earlier)], command: printing("/bonds/particles", body.meta.files, `.[${crack.bond}]`) };
 }
 
 function describe(body, course, cracks, picked) {

@@ -180,10 +180,11 @@ function sayNow(page) {
   const { course, body, cracks } = page;
   if (!course) return;
   const broken = [0, 0];
-  for (const crack of cracks) if (crack.key <= course.key) broken[crack.mode]++;
+  for (const crack of cracks) if (crack.key <= course.key && !crack.earlier) broken[crack.mode]++;
+  const earlier = cracks.filter((crack) => crack.earlier).length;
   const saturation = course.saturation ? `saturation ${course.at(course.saturation, course.key).toFixed(3)}, ` : "";
   const words = saturation + withUnit(course.at(course.time, course.key), "s");
-  const cracked = body.arrays["course.tension"] ? `; broken: ${broken[0]} in tension, ${broken[1]} in shear` : "";
+  const cracked = body.arrays["course.tension"] ? `; broken: ${broken[0]} in tension, ${broken[1]} in shear${earlier ? `, ${earlier} before` : ""}` : "";
   element("now").textContent = words + cracked;
   element("moment").setAttribute("aria-valuetext", words + cracked);
   page.canvas.setAttribute("aria-label", `The body in 3D, ${body.grain.n} grains, at ${words}${cracked}`);
@@ -276,7 +277,7 @@ function startScene(page) {
 
 // When half of what breaks has broken.
 function telling(cracks, last) {
-  const keys = cracks.map((crack) => crack.key).sort((a, b) => a - b);
+  const keys = cracks.filter((crack) => !crack.earlier).map((crack) => crack.key).sort((a, b) => a - b);
   return keys.length ? keys[keys.length >> 1] : last / 2;
 }
 
