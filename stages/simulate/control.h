@@ -26,8 +26,8 @@ double mean_factor(const struct time_table *table, double time, double span);
 void control(const struct simulate_parameters *parameters, const struct scene *scene,
              double time, struct dem *dem);
 
-// The velocity, m/s, of what moves at PLACE with the strain of a box with the lower corner
-// LOWER. The engine knows velocities without it.
+// The velocity, m/s, of what moves at PLACE with the strain of a box with the lower
+// corner LOWER. The engine knows velocities without it.
 struct vector strain_velocity(const struct simulate_parameters *parameters,
                               struct vector lower, struct vector place);
 
