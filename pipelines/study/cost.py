@@ -74,7 +74,7 @@ def foreseen(artifact):
     before = foreseen(made[0]) if made else {}
     if before is None:
         return None
-    sizes = ",".join(f"{before[key]:.12g}" for key in ("grains", "loads") if key in before)
+    sizes = ",".join(f"{before.get(key, 0):.12g}" for key in ("grains", "loads", "throats")) if before else ""
     return asked(artifact.stage(), artifact.scene, artifact.sets, sizes, () if made else artifact.inputs)
 
 

@@ -279,6 +279,13 @@ static enum moving moving_of(int method)
     }
 }
 
+// Nodes of these lattices coincide: merging leaves 3 throats a grain, and some more on
+// sides. (Of 250 grains 4.1, of 2000 3.5.)
+static bool is_degenerate(enum method method)
+{
+    return method == METHOD_CUBIC || method == METHOD_HONEYCOMB;
+}
+
 // GRAINS: as many as were read or said; 0: as the parameters will make.
 static int estimate(const struct pack_parameters *parameters, double grains)
 {
@@ -286,7 +293,8 @@ static int estimate(const struct pack_parameters *parameters, double grains)
     enum status status = STATUS_OK;
     if (!(grains > 0)) status = expected_count(parameters, &grains, &reason);
     if (status) die(status, "%s", reason.text);
-    const struct body_size body = body_of_grains(grains);
+    struct body_size body = body_of_grains(grains);
+    if (is_degenerate(parameters->method)) body = body_with_throats(body, 3.5 * grains);
     const struct cost cost = cost_of_packing(grains, moving_of(parameters->method));
     print_estimate(&cost, &body);
     return STATUS_OK;

@@ -61,14 +61,14 @@ for title, words_of in ("a lattice", {}), ("irregular grains", small):
         words = words_of.get(stage, scene if not words_of else jammed[:2])
         here, alone = estimate(stage, "--estimate", *words, *source), estimate(stage, f"--estimate={sizes}" if sizes else "--estimate", *words)
         seconds, mebibytes = measured(stage, *words, *source, "-o", at(f"{stage}.h5"))
-        source, sizes = [at(f"{stage}.h5")], ",".join(f"{alone[k]:.12g}" for k in ("grains", "loads") if k in alone)
+        source, sizes = [at(f"{stage}.h5")], ",".join(f"{alone.get(k, 0):.12g}" for k in ("grains", "loads", "throats"))
         for said in here, alone:
             if not is_near(said, seconds, mebibytes):
                 off.append((stage, said, seconds, mebibytes))
             disk.append(on_disk(said, f"{stage}.h5"))
     ok(not off, f"{title}: memory within a factor of two, seconds of a busy machine within six", off)
-    if words_of:  # a lattice has fewer throats than its number of grains lets expect
-        ok(0.5 < min(disk) and max(disk) < 2, f"{title}: disk within a factor of two", disk)
+    most = 2 if words_of else 2.5  # fronts in lattices are flatter than the estimate has them
+    ok(0.5 < min(disk) and max(disk) < most, f"{title}: disk within a factor of {most}", disk)
     with h5py.File(at("force-protocol.h5")) as forces:
         shape = forces["force"].shape
     ok((alone["grains"], alone["loads"]) == shape[:2][::-1], f"{title}: grains and loads are those that are made", f"{alone} {shape}")

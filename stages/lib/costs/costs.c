@@ -71,6 +71,13 @@ struct body_size body_of_grains(double grains)
                               .face = 1.8 * pow(grains, 2.0 / 3)};
 }
 
+struct body_size body_with_throats(struct body_size body, double throats)
+{
+    body.face *= pow(throats / body.throats, 2.0 / 3);
+    body.throats = throats;
+    return body;
+}
+
 double recorded_changes(const struct body_size *body, double interval)
 {
     if (isnan(interval)) interval = body->throats > MOST_BY_EVENTS ? COARSE_STEPS : 0;

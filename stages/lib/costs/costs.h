@@ -30,6 +30,9 @@ struct cost {
 // CHANGES, LOADS and SNAPSHOTS stay 0.
 struct body_size body_of_grains(double grains);
 
+// The same with so many THROATS of the merged network, as lattices have fewer.
+struct body_size body_with_throats(struct body_size body, double throats);
+
 // Rows of /changes that a drying records: each step has the throats that lose liquid. A
 // step is an event, or a fall of the saturation by INTERVAL; NAN: as dry chooses.
 double recorded_changes(const struct body_size *body, double interval);

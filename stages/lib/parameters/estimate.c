@@ -18,6 +18,8 @@ void print_estimate(const struct cost *cost, const struct body_size *body)
         json_pack("{s:o,s:o,s:o,s:i,s:o}", "seconds", rough(cost->seconds), "mebibytes",
                   rough(cost->mebibytes), "disk_mebibytes", rough(cost->disk),
                   "threads", 1, "grains", json_integer(llround(body->grains)));
+    if (body->throats > 0)
+        json_object_set_new(line, "throats", json_integer(llround(body->throats)));
     if (body->loads > 0)
         json_object_set_new(line, "loads", json_integer(llround(body->loads)));
     if (cost->most > cost->least)

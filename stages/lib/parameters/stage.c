@@ -99,16 +99,22 @@ static enum progress_mode parse_progress(const char *text)
     die(STATUS_USAGE, "--progress: must be auto, always or never, got %s", text);
 }
 
-// GRAINS or GRAINS,LOADS; nothing: the input says it.
+// GRAINS, GRAINS,LOADS or GRAINS,LOADS,THROATS; nothing: the input says it.
 static void parse_sizes(struct invocation *invocation, const char *text)
 {
+    enum { SIZES = 3 };
+    double *const size[SIZES] = {&invocation->grains, &invocation->loads,
+                                 &invocation->throats};
     invocation->estimates = true;
-    if (!text) return;
-    char grains[32];
-    const char *comma = strchrnul(text, ',');
-    snprintf(grains, sizeof grains, "%.*s", (int)(comma - text), text);
-    invocation->grains = number_of_option("--estimate", grains, 1, 1e9);
-    if (*comma) invocation->loads = number_of_option("--estimate", comma + 1, 1, 1e9);
+    for (int k = 0; text; k++) {
+        char number[32];
+        const char *comma = strchrnul(text, ',');
+        snprintf(number, sizeof number, "%.*s", (int)(comma - text), text);
+        if (k == SIZES)
+            die(STATUS_USAGE, "--estimate: must be GRAINS,LOADS,THROATS, got more");
+        *size[k] = number_of_option("--estimate", number, k == 0, 1e10);
+        text = *comma ? comma + 1 : NULL;
+    }
 }
 
 // Only the pointer is kept: argv outlives the invocation.
@@ -410,7 +416,8 @@ static void list_options(const struct stage *stage, struct argp_option *list)
         end = add_option(end, "estimate", KEY_ESTIMATE, "GRAINS", OPTION_ARG_OPTIONAL,
                          "Print what the run will take, as JSON, and do not run. "
                          "Without INPUT: for so many irregular grains, and as "
-                         "GRAINS,LOADS under so many loads");
+                         "GRAINS,LOADS,THROATS under so many loads (0: not known) "
+                         "with so many throats");
     if (!stage->checkpoints) return;
     end = add_option(end, "checkpoint", KEY_CHECKPOINT, "FILE", 0,
                      "Keep the state there regularly, and when stopped by SIGTERM, "

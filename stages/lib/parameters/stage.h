@@ -62,7 +62,7 @@ struct invocation {
     double checkpoint_every; // s
     bool resumed;            // the run goes on from that checkpoint
     bool estimates;          // only the cost is asked for
-    double grains, loads;    // of --estimate=GRAINS,LOADS; 0: not given
+    double grains, loads, throats; // of --estimate=GRAINS,LOADS,THROATS; 0: not given
     int threads;
     bool tells; // in text, on standard output, for there is no -o
     bool quiet;
