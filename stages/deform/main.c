@@ -101,14 +101,6 @@ static struct artifact *open_network(const char *path)
     return input;
 }
 
-// Exits 65 at a network that says how full its throats are; ADVICE says what to do.
-static void refuse_saturation(const struct artifact *input, const char *advice)
-{
-    static const char name[] = "/throats/saturation";
-    if (!strcmp(input->schema->name, "network") && artifact_has_dataset(input, name))
-        die(STATUS_BAD_DATA, "%s: %s: %s", input_name(input->path), name, advice);
-}
-
 // Where the grains were at the last snapshot of RESPONSE, in place of their places:
 // displacements are from where the response itself began. If they have shrunk, also
 // their radii then. Exits 65: other grains, by their number, or no snapshot.

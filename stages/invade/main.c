@@ -26,6 +26,7 @@
 // any two go together. Conditions are completed before the network is read, so a
 // liquid without surface tension is told at once.
 #include "artifacts/artifact.h"
+#include "artifacts/liquid.h"
 #include "basics/memory.h"
 #include "basics/status.h"
 #include "entry.h"
@@ -365,6 +366,9 @@ int main(int argc, char **argv)
     check_rings(&parameters);
     complete_entry(&parameters);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
+    refuse_saturation(input,
+                      "gas is pressed into a body that is full of liquid: give a "
+                      "network that tessellate or merge-nodes made of it");
     struct network network = artifact_get_periodic_network(input);
 
     struct reason reason;

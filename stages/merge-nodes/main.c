@@ -15,6 +15,7 @@
 #include "artifacts/artifact.h"
 #include "artifacts/body_size.h"
 #include "artifacts/document.h"
+#include "artifacts/liquid.h"
 #include "artifacts/write_network.h"
 #include "basics/memory.h"
 #include "basics/status.h"
@@ -105,18 +106,6 @@ static void check_images(const struct network *network, const char *path)
             input_name(path), FARTHEST_IMAGE);
 }
 
-// Saturations are those of single throats: none is known of throats that merging fuses.
-// Exits 65.
-static void refuse_liquid(const struct artifact *input)
-{
-    if (artifact_has_dataset(input, "/throats/saturation"))
-        die(STATUS_BAD_DATA,
-            "%s: /throats/saturation: merging would lose the liquid in the throats: "
-            "merge the nodes of a network that tessellate has made, or dry this one "
-            "as it is",
-            input_name(input->path));
-}
-
 static int estimate(const struct invocation *invocation)
 {
     const struct body_size body = input_size(invocation, 0);
@@ -136,7 +125,9 @@ int main(int argc, char **argv)
             parameters.threshold);
     if (invocation.estimates) return estimate(&invocation);
     struct artifact *input = artifact_open(invocation.inputs[0], "network");
-    refuse_liquid(input);
+    refuse_saturation(input, "merging would lose the liquid in the throats: merge the "
+                             "nodes of a network that tessellate has made, or dry this "
+                             "one as it is");
     struct network network = artifact_get_periodic_network(input);
 
     struct merge_report report;

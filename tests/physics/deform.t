@@ -228,6 +228,7 @@ with scratch() as folder:
             "deform", at("drying"), at("response"), at("carried"))
     run("dry", *scene, "--set", "stop_saturation=0.9", at("anew"), "-o", at("dried"))
     refused("nor does a drying", "must be a network, is a drying", "deform", at("drying"), at("response"), at("dried"))
+    refused("gas is not pressed into it", saturation_of("carried"), "invade", "--set", "surface_tension=0.07", at("carried"))
     ok(run("deform", "--set", "write=packing", at("carried"), at("response")), "its grains alone are moved")
     ok(run("dry", *scene, at("carried")), "and it dries on")
 

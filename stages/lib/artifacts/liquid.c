@@ -10,6 +10,8 @@
 // number in a file was known to whoever wrote it.
 #include "artifacts/liquid.h"
 
+#include "basics/status.h"
+
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -60,6 +62,14 @@ void artifact_put_liquid(struct artifact *artifact,
             *(const double *)((const char *)liquid + members[k].offset);
         if (!isnan(value)) artifact_put_number(artifact, members[k].name, value);
     }
+}
+
+void refuse_saturation(const struct artifact *artifact, const char *advice)
+{
+    static const char name[] = "/throats/saturation";
+    if (!strcmp(artifact->schema->name, "network") &&
+        artifact_has_dataset(artifact, name))
+        die(STATUS_BAD_DATA, "%s: %s: %s", input_name(artifact->path), name, advice);
 }
 
 void liquid_complete(struct liquid_properties *told,

@@ -30,6 +30,10 @@ struct liquid_properties artifact_get_liquid(const struct artifact *artifact);
 void artifact_put_liquid(struct artifact *artifact,
                          const struct liquid_properties *liquid);
 
+// Exits 65 at a network that says how full its throats are (/throats/saturation);
+// ADVICE says why, and what to give instead.
+void refuse_saturation(const struct artifact *artifact, const char *advice);
+
 // Gives TOLD the surface tension and contact angle of HAS where they are not known.
 // What neither knows stays NAN: the caller says what must be given. Only these two: a
 // stage behind the drying needs no more for its menisci.
