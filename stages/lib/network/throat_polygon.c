@@ -14,6 +14,10 @@
 //
 // Two grains overlap by the lens on both sides of the line at
 //     x = (d^2 + r_i^2 - r_j^2) / (2 d)   from c_i.
+//
+// Feet on a round wall lie in no plane with a throat along it, which is a chord: seen
+// from one of its ends, direction and area would not be those from the other. So of
+// these throats a is the middle.
 #include "network/throat_polygon.h"
 
 #include "basics/memory.h"
@@ -21,19 +25,23 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-// One face as the throat sees it: its two sides relative to the throat's first node.
+// One face as the throat sees it: its two sides relative to a place on the throat.
 struct seen_face {
     struct vector centre[2]; // of a wall: the foot of the grain's
     double radius[2];        // 0: not a grain of the body
     bool wall;               // one of them is a wall
+    bool body;               // that of a body: perhaps round
 };
 
+// From FROM_FIRST of the way along the throat.
 static struct seen_face seen_face(const struct network *network,
                                   const struct throat_sides *sides, int throat,
-                                  int64_t k)
+                                  int64_t k, double from_first)
 {
     const struct packing *packing = &network->packing;
     const struct throat_side side = throat_side(network, sides, throat, k);
+    const struct vector from =
+        add(side.first, scale(from_first, subtract(side.second, side.first)));
     const int face = sides->face[k];
     const int32_t *grain = network->face_particles[face];
     const struct vector first = packing->position[grain[0]];
@@ -41,29 +49,39 @@ static struct seen_face seen_face(const struct network *network,
     const struct vector second = wall ? nearest_on_wall(packing, -1 - grain[1], first)
                                       : second_grain(network, face);
     const int turned = !side.forward;
-    struct seen_face seen = {.wall = wall};
-    seen.centre[turned] = subtract(first, side.first);
-    seen.centre[!turned] = subtract(second, side.first);
+    struct seen_face seen = {.wall = wall, .body = wall && -1 - grain[1] >= WALL_OUTER};
+    seen.centre[turned] = subtract(first, from);
+    seen.centre[!turned] = subtract(second, from);
     for (int end = 0; end < 2; end++)
         if (grain[end] >= 0 && !is_auxiliary(packing, grain[end]))
             seen.radius[end ^ turned] = packing->radius[grain[end]];
     return seen;
 }
 
+static struct vector without(struct vector part, struct vector of)
+{
+    const double square = dot(part, part);
+    return square > 0 ? subtract(of, scale(dot(of, part) / square, part)) : of;
+}
+
 // The direction of the throat. The edge that closes a polygon along a wall lies in that
-// wall, as the first node does: what it lacks is across the wall, where a throat in it
-// does not lead.
+// wall, as the throat does: what it lacks is across the wall, where a throat in it does
+// not lead. A round wall has another normal at each foot: its mean counts.
 static struct vector direction(const struct seen_face *face, int count)
 {
-    struct vector twice = {0};
+    struct vector twice = {0}, mean = {0};
     for (int k = 0; k < count; k++)
         twice = add(twice, cross(face[k].centre[0], face[k].centre[1]));
     for (int k = 0; k < count; k++) {
         if (!face[k].wall) continue;
         const struct vector to = subtract(face[k].centre[1], face[k].centre[0]);
-        const double apart2 = dot(to, to);
-        if (apart2 > 0) twice = subtract(twice, scale(dot(twice, to) / apart2, to));
+        const double side = face[k].radius[0] > 0 ? 1 : -1, apart = norm(to);
+        if (!face[k].body)
+            twice = without(to, twice);
+        else if (apart > 0)
+            mean = add(mean, scale(side / apart, to));
     }
+    twice = without(mean, twice);
     const double size = norm(twice);
     return size > 0 ? scale(1 / size, twice) : twice;
 }
@@ -122,19 +140,23 @@ static int add_angle(struct throat_polygon *polygon, const struct seen_face *fac
     return k;
 }
 
-// What the two grains of FACE cover twice, or one of them beyond its own side.
-static void add_overlap(struct open_section *section, const struct seen_face *face,
+// What the two grains of FACE cover twice, or one of them beyond its own side. Along a
+// round wall two grains are not quite equally high: the mean counts.
+static void add_overlap(struct throat_polygon *polygon, const struct seen_face *face,
                         struct vector along, double apart, const double x[2])
 {
+    struct open_section *section = &polygon->section;
     const double *r = face->radius;
     const bool pair = r[0] > 0 && r[1] > 0;
     const int grain = r[1] > 0 && !pair;
     if (!(pair ? r[0] + r[1] > apart : r[grain] > x[grain])) return;
+    const double share = pair && polygon->from_first > 0 ? 0.5 : 0;
+    const struct vector other = subtract(face->centre[!grain], face->centre[grain]);
     const double chord = (apart + (r[0] - r[1]) * ((r[0] + r[1]) / apart)) / 2;
-    section->overlap[section->n_overlap++] =
-        (struct section_overlap){{pair ? chord : x[0], pair ? apart - chord : x[1]},
-                                 {r[0], r[1]},
-                                 dot(face->centre[grain], along)};
+    section->overlap[section->n_overlap++] = (struct section_overlap){
+        {pair ? chord : x[0], pair ? apart - chord : x[1]},
+        {r[0], r[1]},
+        dot(face->centre[grain], along) + share * dot(other, along)};
 }
 
 static void add_face(struct throat_polygon *polygon, const struct seen_face *face,
@@ -157,11 +179,28 @@ static void add_face(struct throat_polygon *polygon, const struct seen_face *fac
             section->wall +=
                 fmax(0, s - sqrt(fmax(0, radius * radius - apart * apart)));
     }
-    add_overlap(section, face, along, apart, x);
+    add_overlap(polygon, face, along, apart, x);
     const int first = grain[0] < 0;
     if (grain[first] >= 0)
         section->gap[section->n_gap++] = (struct section_gap){
             {grain[first], grain[!first]}, grain[!first] < 0 ? x[first] : apart};
+}
+
+// Where along THROAT its faces are seen from, of the way from its first node.
+static double seen_from(const struct network *network, int throat)
+{
+    const int32_t *ends = network->throat_nodes[throat];
+    const unsigned walls = network->node_walls[ends[0]] & network->node_walls[ends[1]];
+    return walls & (1u << WALL_OUTER | 1u << WALL_INNER) ? 0.5 : 0;
+}
+
+// Heights, so far from where the faces are seen from, AWAY from the first node.
+static void raise_heights(struct open_section *section, double away)
+{
+    for (int k = 0; k < section->n_grain; k++)
+        section->grain[k].height += away;
+    for (int k = 0; k < section->n_overlap; k++)
+        section->overlap[k].height += away;
 }
 
 void throat_polygon_fill(struct throat_polygon *polygon, const struct network *network,
@@ -169,8 +208,10 @@ void throat_polygon_fill(struct throat_polygon *polygon, const struct network *n
 {
     const int64_t begin = sides->offset[throat];
     const int count = (int)(sides->offset[throat + 1] - begin);
+    polygon->from_first = seen_from(network, throat);
     for (int k = 0; k < count; k++)
-        polygon->face[k] = seen_face(network, sides, throat, begin + k);
+        polygon->face[k] =
+            seen_face(network, sides, throat, begin + k, polygon->from_first);
     struct open_section *section = &polygon->section;
     section->n_grain = section->n_overlap = section->n_gap = 0;
     section->wall = section->area = 0;
@@ -180,4 +221,5 @@ void throat_polygon_fill(struct throat_polygon *polygon, const struct network *n
     polygon->axis[1] = cross(along, polygon->axis[0]);
     for (int k = 0; k < count; k++)
         add_face(polygon, &polygon->face[k], along);
+    raise_heights(section, polygon->from_first * section->length);
 }

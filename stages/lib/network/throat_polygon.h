@@ -14,8 +14,9 @@
 struct throat_polygon {
     struct open_section section;
     struct seen_face *face;
-    struct vector *centre; // of section.grain, from the throat's first node
+    struct vector *centre; // of section.grain, from a place on the throat
     struct vector axis[2]; // across the throat
+    double from_first;     // of the way along the throat: that place
 };
 
 // Room for throats with up to MOST sides (throat_sides.most), one for each thread; the
