@@ -243,6 +243,10 @@ with scratch() as folder:
     in_pieces("simulate: moist beads that fall between walls that move",
               ["simulate", *scene, "duration=0.1", "--set", "expected_overlap=1e-6", "--set",
                "bridges.volume=2e-12", beads])
+    groups = ('{"paddle": {"grains": [3, 4], "driven": true, "spin": [0, 0, 9], "point": [0.002, 0, 0]},'
+              ' "stamp": {"grains": [7], "driven": true, "velocity": [0, 0, -0.01]}}')
+    in_pieces("simulate: two groups that are driven",
+              ["simulate", *scene, "duration=0.1", "--set", f"groups={groups}", beads])
 
     dry = ["dry", "-p", SCENE, "--set", "step_interval=0.01"]
     large, small = make_network(folder, "large", 18), make_network(folder, "small", 10)

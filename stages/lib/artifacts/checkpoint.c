@@ -64,9 +64,10 @@ static enum array_type type_of(const json_t *entry)
 static int numbers_in_row(const json_t *entry)
 {
     const json_t *shape = json_object_get(entry, "shape");
-    return json_array_size(shape) > 1
-               ? (int)json_integer_value(json_array_get(shape, 1))
-               : 1;
+    int numbers = 1;
+    for (size_t axis = 1; axis < json_array_size(shape); axis++)
+        numbers *= (int)json_integer_value(json_array_get(shape, axis));
+    return numbers;
 }
 
 void artifact_put_arrays(struct artifact *artifact, const char *group,
