@@ -5,14 +5,18 @@
 // too much. A surplus fills throats at the cluster's edge, the narrowest first, as
 // their suction is largest, and goes on from each throat that it has filled; a
 // shortage empties throats at menisci, the widest first, and gas enters the nodes of
-// those that empty. A priority queue of ranks by radius has the throats that can be
-// filled or emptied next.
+// those that empty. A priority queue of ranks in the order of entry
+// (network/entry_order.h) has the throats that can be filled or emptied next.
+//
+// Clusters compete for the room between them: that with the widest throat is the first.
+// So nothing depends on how throats are numbered.
 #include "liquid.h"
 
 #include "basics/compensated.h"
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "basics/ranks.h"
+#include "network/entry_order.h"
 
 #include <stdlib.h>
 
@@ -23,9 +27,9 @@ struct liquid_state {
     double *capacity; // (n_throat) m3; 0 where no throat takes part
     double *liquid;   // (n_throat) m3, now
     bool *gas;        // (n_node) a throat there is empty
-    int *widest;      // (n_throat) throats in the order of their widths
+    int *widest;      // (n_throat) throats in the order of entry
     int *rank;        // (n_throat) where each is in it
-    int *cluster;     // (n_throat) first throat of its liquid; -1 without
+    int *cluster;     // (n_throat) widest throat of its liquid; -1 without
     struct rank_queue queue;
 };
 
@@ -43,7 +47,7 @@ static struct liquid_state liquid_state_init(const struct network *network,
                                  .rank = NEW_ARRAY(int, n),
                                  .cluster = NEW_ARRAY(int, n),
                                  .queue = rank_queue_init(n)};
-    rank_descending(network->throat_radius, n, state.widest, NULL);
+    order_throats(network, NULL, state.widest);
     for (int k = 0; k < n; k++)
         state.rank[state.widest[k]] = k;
     for (int t = 0; t < n; t++) {
@@ -75,23 +79,32 @@ static bool is_wet(const struct liquid_state *state, int throat)
 }
 
 // Clusters: throats with liquid are connected through nodes without gas. Each is named
-// by its first throat.
+// by its widest throat.
 static void find_clusters(struct liquid_state *state)
 {
     const struct incidence *incidence = &state->incidence;
-    for (int t = 0; t < state->network->n_throat; t++)
-        state->cluster[t] = t;
+    const int n = state->network->n_throat;
+    int *set = NEW_ARRAY(int, n), *name = NEW_ARRAY(int, n);
+    for (int t = 0; t < n; t++) {
+        set[t] = t;
+        name[t] = -1;
+    }
     for (int i = 0; i < state->network->n_node; i++) {
         int first = -1;
         for (int k = incidence->offset[i]; k < incidence->offset[i + 1]; k++) {
             const int t = incidence->throat[k];
             if (state->gas[i] || !is_wet(state, t)) continue;
             if (first < 0) first = t;
-            unite_sets(state->cluster, first, t);
+            unite_sets(set, first, t);
         }
     }
-    for (int t = state->network->n_throat - 1; t >= 0; t--)
-        state->cluster[t] = is_wet(state, t) ? set_root(state->cluster, t) : -1;
+    for (int k = 0; k < n; k++) {
+        const int t = state->widest[k], root = set_root(set, t);
+        if (name[root] < 0) name[root] = t;
+        state->cluster[t] = is_wet(state, t) ? name[root] : -1;
+    }
+    free(set);
+    free(name);
 }
 
 // ---- too much -----------------------------------------------------------------------
@@ -221,7 +234,8 @@ double redistribute_liquid(const struct network *network,
     find_clusters(&state);
     const struct members members = list_members(&state);
     struct compensated expelled = {0};
-    for (int p = 0; p < network->n_throat; p++) {
+    for (int k = 0; k < network->n_throat; k++) {
+        const int p = state.widest[k];
         const int begin = members.offset[p], count = members.offset[p + 1] - begin;
         if (count)
             compensated_add(&expelled, redistribute_cluster(

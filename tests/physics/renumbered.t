@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A network between settled grains, nodes and throats renumbered at random: in every liquid the
-# same throats empty at the same times, and gas is pressed in in the same order. Throats that are
-# narrowest at a node they share are equally wide.
+# same throats empty at the same times, gas is pressed in in the same order, and grains that move
+# leave the same liquid in every throat. Throats that are narrowest at a node they share are
+# equally wide.
 import os
 import shutil
 import sys
@@ -60,5 +61,21 @@ with scratch() as folder:
         other, again = events(stage, "two.h5", *settings)
         ok(np.array_equal(throat, was[other]) and np.allclose(again, value, rtol=1e-12, atol=0),
            f"{stage}, {' '.join(settings)}: whatever the numbers")
+
+    # Grains move, and liquid with them: the same throats hold the same.
+    for name in "one", "two":
+        run("dry", "--quiet", *sets("stop_saturation=0.6"), at(name + ".h5"), "-o", at(name + "-dry.h5"))
+    run("force-protocol", "--quiet", *sets("steps=20", "force_scale=0.02"), at("one-dry.h5"),
+        "-o", at("forces.h5"))
+    run("dem-replay", "--quiet", *sets("engine=quasi-static", "friction=0", "bond.by=touching",
+                                       "bond.normal_strength=1e12", "bond.shear_strength=1e12"),
+        at("forces.h5"), "-o", at("response.h5"))
+    held = []
+    for name in "one", "two":
+        run("deform", "--quiet", at(name + "-dry.h5"), at("response.h5"), "-o", at("moved.h5"))
+        with h5py.File(at("moved.h5")) as file:
+            held.append(file["throats/saturation"][:])
+    off = np.abs(held[0][was] - held[1]).max()
+    ok(off < 1e-9, "deform: the same liquid in every throat", off)
 
 done()
