@@ -354,6 +354,16 @@ static enum status leave_rings(const struct network *network,
     return status;
 }
 
+// Exits 65 at a network with liquid, as all throats are taken for full.
+static struct artifact *open_full_network(const char *path)
+{
+    struct artifact *input = artifact_open(path, "network");
+    refuse_saturation(input,
+                      "gas is pressed into a body that is full of liquid: give a "
+                      "network that tessellate or merge-nodes made of it");
+    return input;
+}
+
 int main(int argc, char **argv)
 {
     struct invade_parameters parameters = {.given = conditions_unset()};
@@ -365,10 +375,7 @@ int main(int argc, char **argv)
     check_walls(conditions, parameters.transport);
     check_rings(&parameters);
     complete_entry(&parameters);
-    struct artifact *input = artifact_open(invocation.inputs[0], "network");
-    refuse_saturation(input,
-                      "gas is pressed into a body that is full of liquid: give a "
-                      "network that tessellate or merge-nodes made of it");
+    struct artifact *input = open_full_network(invocation.inputs[0]);
     struct network network = artifact_get_periodic_network(input);
 
     struct reason reason;
