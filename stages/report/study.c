@@ -177,6 +177,12 @@ static char *value_text(const json_t *value)
 {
     const char *text = json_string_value(value);
     if (text) return duplicate(text, strlen(text) + 1, 1);
+    if (json_is_real(value)) { // 100000, not 100000.0
+        char number[40];
+        const int length =
+            snprintf(number, sizeof number, "%.9g", json_real_value(value));
+        return duplicate(number, (size_t)length + 1, 1);
+    }
     char *dumped = json_dumps(value ? value : json_null(),
                               JSON_ENCODE_ANY | JSON_COMPACT | JSON_REAL_PRECISION(9));
     if (!dumped) die(STATUS_INTERNAL, "out of memory");
@@ -345,6 +351,7 @@ void put_study_headline(FILE *page, const struct study *study)
         if (study->n_group > 1) put_line(page, "%s: ", group_of(study, group));
         say_broken(page, study, group);
     }
+    if (is_known(study, 1) && study->n_group > 3) fputs("; and so on below", page);
     fputs(".", page);
 }
 
@@ -492,17 +499,17 @@ static void put_caption(FILE *page, const struct study *study, int column)
     fputs("</p>\n", page);
 }
 
-// An SVG of its own for each column: a line of LINE pixels a group, the axis below with
-// its ends and middle. A figure's caption has the same in words.
+// An SVG of its own for each column, under its name: a line of LINE pixels a group, the
+// axis below with its ends and middle. The text below has the same in words.
 void put_distributions(FILE *page, const struct study *study)
 {
     for (int c = 0; c < COLUMNS; c++) {
         if (!scatters(study, c)) continue;
         const struct axis axis = axis_of(study, c);
         const int high = LINE * study->n_group;
-        fprintf(page,
-                "<figure><svg class=\"strip\" viewBox=\"0 0 %d %d\" role=\"img\" ",
-                WIDE, high + 40);
+        put_cell(page, "<figure><figcaption>", column_name[c], "</figcaption>");
+        fprintf(page, "<svg class=\"strip\" viewBox=\"0 0 %d %d\" role=\"img\" ", WIDE,
+                high + 40);
         put_cell(page, "aria-label=\"", column_name[c], ", a point a run\">");
         for (int group = 0; group < study->n_group; group++)
             put_strip(page, study, c, group, axis);

@@ -109,12 +109,24 @@ mean, sd = counts[:3, 0].mean(), counts[:3, 0].std(ddof=1)
 half = 4.302652729911275 * sd / np.sqrt(3)  # Student's t for 2 degrees of freedom
 ok(f"liquid inviscid: {mean:.4g} bonds broke on average (95 % interval {max(0, mean - half):.4g} to {mean + half:.4g})" in html.unescape(page),
    "an interval for each group", (mean, half))
+drawn = re.findall(r"<figure><figcaption>([^<]*)</figcaption><svg[^>]* aria-label=\"([^\"]*), a point a run\"", page)
+ok(len(drawn) == page.count("<figure>") and drawn[0] == ("broken", "broken") and all(a == b and a in [name.strip() for name in head] for a, b in drawn),
+   "every strip is headed by what it shows", drawn)
 ok(page.count("<circle") % 6 == 0 and page.count("<circle") >= 18, "a point a run in every strip", page.count("<circle"))
 run("report", *paths[:3], "-o", at("study/one.html"))
 ok("here is one, of runs that differ in seeds at most" in open(at("study/one.html")).read(), "one group is not tested")
 run("report", at("study/inviscid"), "-o", at("study/below.html"))
 ok(re.findall(r"<tr><th scope=\"row\">(?:<a[^>]*>)?([^<]*)", open(at("study/below.html")).read()) == re.findall(
     r"<tr><th scope=\"row\">(?:<a[^>]*>)?([^<]*)", open(at("study/one.html")).read()), "a folder of runs stands for them")
+for k, strength in enumerate([20000.0, 30000.0, 40000.0, 50000.0]):
+    run("dem-replay", "-q", "-p", at("scene.json"), "--set", f"bond.normal_strength={strength}", f"{paths[0]}/forces.h5", "-o", at(f"response-{k}.h5"))
+    os.makedirs(at(f"four/{k}"))
+    os.rename(at(f"response-{k}.h5"), at(f"four/{k}/response.h5"))
+run("report", at("four"), "-o", at("four.html"))
+four = html.unescape(open(at("four.html")).read())
+headline = re.search(r'id="headline">(.*?)</p>', four, re.S)[1]
+ok("4 runs in 4 groups: normal_strength 20000: " in headline and headline.count("bonds broke") == 3 and headline.endswith("; and so on below."),
+   "a headline says that it leaves groups out, and whole numbers without a point", headline)
 os.makedirs(at("study/empty"))
 ended, error = refused(paths[0], at("study/empty"))
 ok(ended == 66 and "holds no artifact" in error, "a folder without a run is refused", (ended, error))
