@@ -323,7 +323,8 @@ static void put_forces(FILE *page, const struct run *run, const struct course *c
                  saturation_at(course, body->heaviest_time));
     const double suction = summary_of(run, FORCES, "/summary/capillary_pressure");
     if (suction > 0)
-        put_fact(page, nowhere, "Suction", "%s", with_unit(suction, "Pa", text));
+        put_fact(page, nowhere, "Suction", "%s in a throat of mean radius",
+                 with_unit(suction, "Pa", text));
     put_largest_contact(page, run, course);
 }
 
@@ -358,8 +359,8 @@ void put_makeup(FILE *page, const struct run *run)
     char low[40], high[40], all[100];
     snprintf(all, sizeof all, most > least * 1.001 ? "%s to %s" : "%s",
              with_unit(2 * least, "m", low), with_unit(2 * most, "m", high));
-    put_fact(page, nowhere, "Grains", "%d of %s, %d bonds", packing->n_particle, all,
-             packing->n_bond);
+    put_fact(page, nowhere, "Grains", "%d, %s in diameter, %d bonds",
+             packing->n_particle, all, packing->n_bond);
     if (run->network.n_throat)
         put_fact(page, nowhere, "Pores", "%d throats between %d nodes",
                  run->network.n_throat, run->network.n_node);

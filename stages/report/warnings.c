@@ -9,7 +9,8 @@
 //
 //     response   steps_unsettled > 0, and mean.unsettled.cracks of crackstats;
 //                gone > 0; snaps > 0; bond_number_body or _grain >= WEIGHT_MATTERS
-//                without gravity; weight_cracks > 0; weight_unbalanced_ratio >= 1e-4
+//                without gravity; weight_cracks > 0; weight_unbalanced_ratio >= 1e-4;
+//                a packing as its input, without a drying
 //     forces     force_scale != 1; interpolation_error > 0.1; field_error > 0.05
 //     drying     shut_throats > 0; enclosed_throats > 0; balance_error > 1e-6;
 //                residual or liquid_residual > 1e-3; throats that refilled (body.c)
@@ -26,6 +27,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 // NAN where there is no such artifact, or it does not say.
@@ -73,6 +75,30 @@ static void warn_of_rest(FILE *page, const struct run *run)
     if (gone > 0)
         warn(page, "%.0f grains detached from the body: nothing held them.", gone);
     if (snaps > 0) warn(page, "The body snapped through or buckled %.0f times.", snaps);
+}
+
+// A packing that shrinks or drains by itself has no times: dem-replay counts its steps.
+static bool counts_steps(const struct artifact *response)
+{
+    char *text = artifact_get_text(response, "inputs");
+    json_t *inputs = text ? json_loads(text, 0, NULL) : NULL;
+    const char *schema =
+        json_string_value(json_object_get(json_array_get(inputs, 0), "schema"));
+    const bool counts = schema && !strncmp(schema, "craquelure/packing/", 19);
+    json_decref(inputs);
+    free(text);
+    return counts;
+}
+
+// Without a drying the throats of a network are drawn full to the end.
+static void warn_of_course(FILE *page, const struct run *run)
+{
+    const struct artifact *response = run->of[RESPONSE];
+    if (!response || run->of[DRYING] || !counts_steps(response)) return;
+    warn(page, "No drying gives times here: a second stands for a step of the load.");
+    if (run->network.n_throat)
+        warn(page,
+             "No drying empties the throats here: they are drawn full to the end.");
 }
 
 // fmax takes the one that is known. Where gravity is in the run its Bond number is no
@@ -195,6 +221,7 @@ void put_warnings(FILE *page, const struct run *run, const struct shown_body *bo
              "This is one run, so the counts have no interval: other seeds of the "
              "throat radii or the packing show how far they scatter.");
     warn_of_rest(page, run);
+    warn_of_course(page, run);
     warn_of_weight(page, run);
     warn_of_forces(page, run);
     warn_of_liquid(page, run, body);

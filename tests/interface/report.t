@@ -58,6 +58,17 @@ for name in NAMES:
     shutil.copy(at(name), at("elsewhere"))
 ok(run("report", at("elsewhere")) == page, "wherever they lie")
 ok(len(page) < 150e3, "a small run is a small page", len(page))
+with h5py.File(at("packing.h5")) as file, h5py.File(at("forces.h5")) as forces:
+    radii, suction = file["particles/radius"][:], forces["summary"].attrs["capillary_pressure"]
+said = dict(re.findall(r"<dt>([^<]*)</dt><dd>([^<]*)", text))
+ok(said["Grains"].startswith(f"{len(radii)}, {2e9 * radii[0]:.3g} nm in diameter") and
+   said["Suction"].strip() == f"{suction / 1e6:.3g} MPa in a throat of mean radius", "sizes are named diameters, and whose suction it is", said)
+os.makedirs(at("shrunk"))
+run("dem-replay", "-q", "--set", "shrinkage.strain=0.01", "--set", "shrinkage.steps=5", "--set", "cycles=20", at("packing.h5"), "-o", at("shrunk/response.h5"))
+notice = "a second stands for a step of the load"
+ok(notice in run("report", at("shrunk")).decode() and notice not in text, "times that are steps are said to be so")
+ok("drawn full to the end" in run("report", at("shrunk/response.h5"), at("packing.h5"), at("tessellation.h5"), at("network.h5")).decode() and
+   "drawn full to the end" not in text, "and throats that nothing empties")
 with h5py.File(at("response.h5")) as file:
     modes, breaks, bonds = file["cracks/mode"][:], file["cracks/time"][:], file["bonds/particles"][:]
     crack_bonds, crack_saturation = file["cracks/bond"][:], file["cracks/saturation"][:]
