@@ -18,7 +18,11 @@ def imported(title, content, line, *settings):
 imported("a line of three numbers is named", "0 0 0 1\n3 0 0\n",
          "line 2: must be four numbers, x y z r, or a comment, #; has 3 numbers")
 imported("a line of five numbers is named", "# grains\n\n0 0 0 1 1\n",
-         "line 3: must be four numbers, x y z r, or a comment, #; has 5 numbers")
+         "line 3: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone")
+imported("decimal commas are named", "1,5;2,5;0,25;0,5\n",
+         "line 1: must be four numbers, x y z r, or a comment, #; has 8 numbers; commas are no decimal points here")
+imported("not where commas part columns", "1.5,2.5;0.25,0.5,1\n",
+         "line 1: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone")
 imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
          "line 2: must be four numbers, x y z r, or a comment, #")
 imported("the names of columns want a #", "x,y,z,r\n0,0,0,1\n",

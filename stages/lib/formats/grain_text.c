@@ -10,6 +10,7 @@
 
 #include "basics/memory.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,10 +29,28 @@ static int read_numbers(const char *line, double numbers[4])
     }
 }
 
+// Numbers as 1,5 in a file with semicolons, as spreadsheets write where commas are
+// decimal. Without semicolons such a comma parts columns.
+static bool has_decimal_commas(const char *line)
+{
+    if (!strchr(line, ';') || strchr(line, '.')) return false;
+    for (const char *c = strchr(line, ','); c; c = strchr(c + 1, ','))
+        if (c > line && isdigit((unsigned char)c[-1]) && isdigit((unsigned char)c[1]))
+            return true;
+    return false;
+}
+
+// What to do about a LINE that has COUNT numbers.
+static const char *advice(const char *line, int count)
+{
+    if (has_decimal_commas(line)) return "; commas are no decimal points here";
+    return count > 4 ? "; keep the columns x y z r alone" : "";
+}
+
 // NUMBER: of the line, from 1. FIRST: no grain has come before, so that words may be
 // the names of columns. Radii are checked last, when they are numbers.
-static enum status check_grain(const double grain[4], int count, int number, bool first,
-                               struct reason *reason)
+static enum status check_grain(const char *line, const double grain[4], int count,
+                               int number, bool first, struct reason *reason)
 {
     if (count < 0)
         return refuse(reason, STATUS_BAD_DATA,
@@ -40,8 +59,8 @@ static enum status check_grain(const double grain[4], int count, int number, boo
     if (count != 4)
         return refuse(
             reason, STATUS_BAD_DATA,
-            "line %d: must be four numbers, x y z r, or a comment, #; has %d numbers",
-            number, count);
+            "line %d: must be four numbers, x y z r, or a comment, #; has %d numbers%s",
+            number, count, advice(line, count));
     for (int k = 0; k < 4; k++)
         if (!isfinite(grain[k]))
             return refuse(reason, STATUS_BAD_DATA, "line %d: must be finite, got %g",
@@ -99,7 +118,7 @@ enum status import_text(const struct bytes *text, struct packing *packing,
         const int count = read_numbers(line, grain);
         number++;
         if (count == 0) continue;
-        status = check_grain(grain, count, number, !packing->n_particle, reason);
+        status = check_grain(line, grain, count, number, !packing->n_particle, reason);
         if (status) break;
         if (packing->n_particle == capacity) {
             capacity = capacity ? 2 * capacity : 64;
