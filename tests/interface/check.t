@@ -148,6 +148,15 @@ for title, position, radius, box, wrong, packed, mends in BAD:
             ok(np.allclose(file["particles/position"], x, rtol=1e-12, atol=0)
                and np.allclose(file["particles/radius"], r, rtol=1e-12, atol=0),
                f"{title}: to the grains themselves")
+
+# One grain stands out of the top; docs/your-grains.md leaves it out and lowers the box.
+top = text("top", np.vstack([x, [high[0] / 2, high[1] / 2, 2 * high[2]]]), np.append(r, r[0]))
+status, report, _ = check(top, *near)
+ok(status == 1 and names(report) == ["empty"] and "a few grains stand out" in report["findings"][0]["text"], "a grain above the bed", report["findings"])
+call("pack", "-q", *sets("method=import", f"slab.upper={0.9 * high[2]}"), *near, top, "-o", at("slab.h5"))
+call("pack", "-q", *sets("method=import", f"upper=[{high[0]},{high[1]},{0.95 * high[2]}]"), *near, at("slab.h5"), "-o", at("lower.h5"))
+status, report, _ = check(at("lower.h5"), *near)
+ok(status == 0 and report["suggested"], "is left out, and the box lowered", report["findings"])
 quiet = call("pack", "-q", *sets("method=import"), text("bad", 1e3 * x, 1e3 * r), "-o",
              at("bad.h5"))
 ok(quiet == (0, "", ""), "-q keeps warnings back", quiet)

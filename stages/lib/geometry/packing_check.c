@@ -175,10 +175,9 @@ static void judge_room(const struct packing_facts *facts, struct findings *findi
     if (fills)
         add_finding(findings, FINDING_WRONG, "empty",
                     "%.0f %% of the box is more than %.3g m from every grain: a body "
-                    "that is no "
-                    "box, or hollow, whose surroundings would fill with liquid: cut a "
-                    "box out of "
-                    "it",
+                    "that is no box, or hollow, or whose top a few grains stand out "
+                    "of. The empty part would fill with liquid: cut a box out of the "
+                    "body (docs/your-grains.md)",
                     100 * facts->empty, facts->far);
     else
         add_finding(findings, FINDING_WRONG, "empty",
