@@ -256,6 +256,7 @@ ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # A file, for there may be more recipes than a command line holds; this make's own, for there may
 # be several at work.
 recipes := $(shell $(if $(wildcard $(BUILD)),,mkdir -p $(BUILD) &&) mktemp $(BUILD)/recipes.XXXXXX)
+$(if $(recipes),,$(error $(BUILD): cannot be written))
 $(file >$(recipes),$(foreach a,$(artifacts),$(recipe/$a)))
 stale := $(shell tools/memo check $(recipes) $(BUILD)/digests)
 ifneq ($(.SHELLSTATUS),0)

@@ -282,6 +282,9 @@ rm -rf build/digests
 
 # --- names of files: they work, or are refused in one line, and none is run ----------------
 
+make run BUILD=/proc/none >said 2>&1
+is 'a folder of builds that cannot be written is named' yes "$(grep -q '/proc/none: cannot be written' said && echo yes || cat said)"
+
 # refused VARIABLE NAME [MAKE-ARGUMENTS...]
 refused()
 {
