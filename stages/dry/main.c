@@ -200,6 +200,29 @@ static void note_fluids(const struct dry_parameters *parameters,
         report("%s", text);
 }
 
+// How many layers there will be over the network of the input; 1: not known, or lumped.
+static double expected_layers(const struct invocation *invocation,
+                              struct dry_parameters parameters)
+{
+    if (!invocation->n_input) return fmax(1, (double)parameters.layers);
+    struct artifact *input = open_input(invocation->inputs[0]);
+    struct network network = artifact_get_periodic_network(input);
+    const struct drying_conditions *conditions = &parameters.conditions;
+    struct reason reason;
+    double layers = 1;
+    if (!complete_conditions(&parameters, &network, &reason)) {
+        give_mass_transfer(&network, &parameters, true);
+        layers = conditions->lumped ? 1
+                 : conditions->layers > 0
+                     ? conditions->layers
+                     : drying_scale(&network, conditions).boundary_layer;
+    }
+    free(parameters.even_snapshots);
+    network_free(&network);
+    artifact_close(input);
+    return fmax(1, layers);
+}
+
 static int estimate(const struct invocation *invocation,
                     const struct dry_parameters *parameters)
 {
@@ -209,6 +232,8 @@ static int estimate(const struct invocation *invocation,
     struct cost cost =
         cost_of_drying(&body, parameters->liquid == LIQUID_VISCOUS, conditions->kelvin,
                        !(conditions->vapour_tolerance > 0));
+    cost =
+        with_boundary_layer(cost, body.face, expected_layers(invocation, *parameters));
     if (parameters->rings != RINGS_NONE)
         cost = with_rings(cost, &body, parameters->rings == RINGS_FILMS,
                           film_step(parameters, body.throats));

@@ -82,6 +82,11 @@ for rings in "isolated", "films":
         off.append((rings, said, seconds, mebibytes))
 ok(not off, "and with rings and films", off)
 
+thick = [*jammed[:2], *sets("boundary_layer.mass_transfer=0.05", "stop_saturation=0.99"), at("merge-nodes.h5")]
+said, (seconds, mebibytes) = estimate("dry", "--estimate", *thick), measured("dry", *thick, "-o", at("thick.h5"))
+ok(is_near(said, seconds, mebibytes) and said["seconds"] > 2 * estimate("dry", "--estimate", *jammed[:2], at("merge-nodes.h5"))["seconds"],
+   "hundreds of boundary layers take their time", f"{said} {seconds} {mebibytes}")
+
 grown = [estimate("dry", f"--estimate={n}", *scene) for n in (1000, 10000, 100000)]
 ok(all(a["seconds"] < b["seconds"] and a["mebibytes"] < b["mebibytes"] for a, b in zip(grown, grown[1:])), "more grains take more", grown)
 status, said, error = call("dry", "--estimate", *scene)

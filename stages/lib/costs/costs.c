@@ -142,6 +142,20 @@ struct cost with_rings(struct cost drying, const struct body_size *body, bool fi
     return drying;
 }
 
+// By levels, or by the columns of separators where their front is smaller.
+struct cost with_boundary_layer(struct cost drying, double columns, double layers)
+{
+    const double separator = 2 * sqrt(columns), front = separator * layers;
+    const bool by_levels = front >= columns;
+    const double eliminated = layers * (by_levels ? columns : separator);
+    const double seconds =
+        1e-6 * layers * columns + 2.7e-11 * eliminated * pow(fmin(front, columns), 2);
+    drying.seconds += seconds;
+    drying.least += seconds;
+    drying.most += seconds;
+    return drying;
+}
+
 // What the stages hold of forces over time: a band of rows.
 static double band_bytes(const struct body_size *body)
 {

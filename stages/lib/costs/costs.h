@@ -61,6 +61,10 @@ struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin
 struct cost with_rings(struct cost drying, const struct body_size *body, bool films,
                        double step);
 
+// What eliminating a boundary layer of so many LAYERS over the COLUMNS of the open side
+// adds.
+struct cost with_boundary_layer(struct cost drying, double columns, double layers);
+
 struct cost cost_of_forces(const struct body_size *body);
 
 // BODY->loads loads by CYCLES time steps each after RAMP; by up to MOST until they are
