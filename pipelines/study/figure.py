@@ -108,10 +108,15 @@ def span_of(axis):
 
 
 def marks_of(axis):
-    """Labels of a logarithmic axis on which there are hardly any powers of ten, for gnuplot, which takes the
-    text "5e+04" for no number; "" for its own."""
-    few = axis.log and len(axis.values) <= 10 and max(axis.values) < 30 * min(axis.values)
-    return "(" + ", ".join(f'"{x:.3g}" {x:.9g}' for x in axis.values) + ")" if few else ""
+    """Labels 1, 2 and 5 of a logarithmic axis on which there are hardly any powers of ten, or its values where
+    they are too near each other, for gnuplot, which takes the text "5e+04" for no number; "" for its own."""
+    first, last = min(axis.values), max(axis.values)
+    if not axis.log or last >= 30 * first:
+        return ""
+    powers = range(math.floor(math.log10(first)), math.ceil(math.log10(last)) + 1)
+    marks = [x for x in (float(f"{k}e{power}") for power in powers for k in (1, 2, 5)) if 0.999 * first < x < 1.001 * last]
+    marks = marks if len(marks) > 1 else [first, last]
+    return "(" + ", ".join(f'"{x:.3g}" {x:.9g}' if x >= 1e6 or x < 1e-3 else f'"{x:.6g}" {x:.9g}' for x in marks) + ")"
 
 
 def step_of(values):
