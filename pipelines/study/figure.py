@@ -108,8 +108,9 @@ def span_of(axis):
 
 
 def marks_of(axis):
-    """Labels 1, 2 and 5 of a logarithmic axis on which there are hardly any powers of ten, or its values where
-    they are too near each other, for gnuplot, which takes the text "5e+04" for no number; "" for its own."""
+    """Labels for gnuplot, which takes the text "5e+04" for no number, of a logarithmic axis on which there are
+    hardly any powers of ten: 1, 2 and 5 times these, or its ends if fewer than two of them lie on it. "":
+    gnuplot's own."""
     first, last = min(axis.values), max(axis.values)
     if not axis.log or last >= 30 * first:
         return ""

@@ -9,9 +9,9 @@
 // Lengths become metres before anything is measured (import.scale, import.diameters),
 // as pack does it; an artifact keeps its own bonds. Contacts are pairs within
 // touching_gap, of the sum of the radii. Grains of an auxiliary layer, and its part of
-// the box, do not count. The material is only for the suggestions and
-// the weight: no other finding depends on it. A liquid without a known surface tension
-// at the temperature ends the call before grains are read.
+// the box, do not count. The material is only for the suggestions and the weight: no
+// other finding depends on it. A liquid without a known surface tension at the
+// temperature ends the call before grains are read.
 //
 // Without -o it tells people, with -o it writes schemas/check.json; both by tell.c.
 #include "artifacts/artifact.h"

@@ -200,22 +200,21 @@ static void note_fluids(const struct dry_parameters *parameters,
         report("%s", text);
 }
 
-// How many layers there will be over the network of the input; 1: not known, or lumped.
+// How many layers there will be: as given, or as the network of the input asks for; 1:
+// not known, or lumped.
 static double expected_layers(const struct invocation *invocation,
                               struct dry_parameters parameters)
 {
-    if (!invocation->n_input) return fmax(1, (double)parameters.layers);
+    if (parameters.exchange == EXCHANGE_LUMPED) return 1;
+    if (parameters.layers > 0 || !invocation->n_input)
+        return fmax(1, (double)parameters.layers);
     struct artifact *input = open_input(invocation->inputs[0]);
     struct network network = artifact_get_periodic_network(input);
-    const struct drying_conditions *conditions = &parameters.conditions;
     struct reason reason;
     double layers = 1;
     if (!complete_conditions(&parameters, &network, &reason)) {
         give_mass_transfer(&network, &parameters, true);
-        layers = conditions->lumped ? 1
-                 : conditions->layers > 0
-                     ? conditions->layers
-                     : drying_scale(&network, conditions).boundary_layer;
+        layers = drying_scale(&network, &parameters.conditions).boundary_layer;
     }
     free(parameters.even_snapshots);
     network_free(&network);
