@@ -64,11 +64,26 @@ static void search_along_step(struct quasi_static *qs, const struct displacement
     slope_at(qs, from, low);
 }
 
+// Whether K is the tangent as all pairs are now: a fresh one is not factored twice.
+static bool is_tangent_factored(const struct quasi_static *qs)
+{
+    if (qs->factors == 0 || qs->factored_dashpot != dashpot_in_stiffness(qs))
+        return false;
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct factored now = pair_as_factored(qs, j);
+        if (now.state != qs->factored[j].state ||
+            now.is_bonded != qs->factored[j].is_bonded)
+            return false;
+    }
+    return true;
+}
+
 bool frictionless_step(struct quasi_static *qs)
 {
     if (!is_frictionless(qs) || qs->damping > 0) return false;
     update_residual(qs);
-    if (!factor_tangent(qs)) return false;
+    contact_solver_clear(qs->contacts);
+    if (!is_tangent_factored(qs) && !factor_tangent(qs)) return false;
     stiffness_begin(qs->matrix, qs->residual);
     stiffness_finish(qs->matrix, qs->step);
     if (qs->may_detach && detach_beyond(qs, qs->step, SMALL_LIMIT)) return true;

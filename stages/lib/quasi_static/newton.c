@@ -22,9 +22,8 @@ bool factor_tangent(struct quasi_static *qs)
     for (int j = 0; j < qs->n_pair; j++) {
         const struct contact_pair *pair = &qs->pair[j];
         const enum contact_state state = qs->response[j].contact.state;
-        const bool is_bonded = pair->is_bonded && !pair->is_detached;
-        qs->factored[j] = (struct factored){state, is_bonded};
-        if (state == CONTACT_NEW) qs->factored[j].state = CONTACT_STICKING;
+        qs->factored[j] = pair_as_factored(qs, j);
+        const bool is_bonded = qs->factored[j].is_bonded;
         for (int k = 0; k < COMPONENTS; k++)
             qs->tangent[j][k] = is_bonded ? pair->bond_stiffness[k] : 0;
         if (state) qs->tangent[j][NORMAL] += pair->normal_stiffness;

@@ -146,6 +146,14 @@ int grain_of_largest_residual(const struct quasi_static *qs); // the first such
 // The tangent as all pairs are now. False: it has no factor.
 bool factor_tangent(struct quasi_static *qs);
 
+// How pair J would be in K if it were factored now; what comes to touch sticks.
+static inline struct factored pair_as_factored(const struct quasi_static *qs, int j)
+{
+    const enum contact_state state = qs->response[j].contact.state;
+    return (struct factored){state == CONTACT_NEW ? CONTACT_STICKING : state,
+                             qs->pair[j].is_bonded && !qs->pair[j].is_detached};
+}
+
 // A step of Newton's method, or, where none is found, a new factor, unless IS FRESH
 // says that it is new. False: neither helps.
 bool newton_step(struct quasi_static *qs, bool *is_fresh);
