@@ -10,6 +10,7 @@ import struct
 import subprocess
 import sys
 
+import h5py
 import numpy as np
 from PIL import Image
 
@@ -92,6 +93,26 @@ with scratch() as folder:
        "its grains are seen from above, but the three in the square of the tower", (seen < 60).mean())
     width, height = struct.unpack(">II", read(at("none.png"))[16:24])
     ok((width, height) == (2 * 520 + 70, 520 + 30), "as two pictures in a row", (width, height))
+
+# Films: of the throats in the slice those with liquid are blue.
+with scratch() as folder:
+    at = lambda *names: os.path.join(folder, *names)
+    run("pack", "-q", "--set", "method=soft_spheres", "--set", "count=60", "--set", "seed=1", "-o", at("packing"))
+    run("tessellate", "-q", "--set", "throat_volume=void", "--set", "throat_radius=entry", at("packing"), "-o", at("tessellation"))
+    run("merge-nodes", "-q", at("tessellation"), "-o", at("network"))
+    for rings in "films", "isolated":
+        stage("dry", at("network"), at(rings), sets=[f"rings={rings}", "snapshots=[0.8,0.4]", "gravity=9.81"])
+    svg = draw("figures/films", at("isolated"), at("films"), at("films.svg"))
+    with h5py.File(at("isolated")) as isolated, h5py.File(at("films")) as films:
+        width = isolated["domain/upper"][0] - isolated["domain/lower"][0]
+        ends = ((isolated["nodes/position"][:] - isolated["domain/lower"][:]) / width)[isolated["throats/nodes"][:]]
+        inside = (abs(ends.mean(1)[:, 1] - 0.5) < 1 / 6) & (abs(ends[:, 0, 0] - ends[:, 1, 0]) < 0.5)
+        inside &= np.hypot(*(ends[:, 1] - ends[:, 0])[:, [0, 2]].T) > 2e-4  # shorter ones are points
+        wanted = sum(int((file["snapshots/throat_saturation"][:, inside] > 0).sum()) for file in (films, isolated))
+    lines = re.findall(r"<path stroke='rgb\( 10,  74, 150\)' +d='([^']*)'", svg)
+    drawn = sum(line.count("L") for line in lines)
+    ok(drawn == wanted > 0, "as many throats are blue as have liquid", (drawn, wanted))
+    ok("films.conductance 1" in svg and "isolated rings" in svg, "films and rings have their titles")
 
 # ---- the scripts --------------------------------------------------------------------
 old = colours("#0a2a7a #ffc20e #e0b000")
