@@ -75,6 +75,11 @@ run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
 run_page := $(run_folder)/report.html
+define refuse_drains
+if $(DEM_REPLAY) -p $(SCENE) --parameters | jq -e '.capillary.suction > 0' >/dev/null; then \
+		echo '$(SCENE): dem-replay.capillary drains the packing itself, so there is no drying to run:' \
+			'make craquelure SCENE=$(SCENE)$(IMPORT:%= IMPORT=%)' >&2; exit 65; fi
+endef
 ifneq ($(filter report $(run_page),$(MAKECMDGOALS)),)
 $(call page,$(run_page),$(SCENE),$(notdir $(run_folder)),$(call network_artifacts,$(run_folder)) $(call \
 	history_artifacts,$(run_folder)))
@@ -82,7 +87,8 @@ endif
 ifneq ($(filter simulate $(run_folder)/motion.h5,$(MAKECMDGOALS)),)
 $(call simulate,$(run_folder)/motion.h5,$(SCENE),,$(run_folder)/packing.h5)
 endif
-# A wrong key of the last stage is not to be found after the others have run.
+# What the last stage would refuse is not to be found after the others have run: a wrong key, or a
+# layer whose liquid dem-replay itself drains, which takes no drying.
 run_stages := $(if $(filter simulate,$(MAKECMDGOALS)),pack simulate,pack tessellate merge-nodes dry force-protocol \
 	dem-replay crackstats $(filter report,$(MAKECMDGOALS)))
 ifdef really
@@ -91,6 +97,7 @@ $(run_folder)/packing.h5: | sections
 sections: | $(run_stages:%=$(BUILD)/bin/%)
 	@for stage in $(run_stages); do \
 		$(BUILD)/bin/$$stage -p $(SCENE) --parameters >/dev/null || exit; done
+	$(if $(filter dem-replay,$(run_stages)),$(if $(filter $(BUILD)/bin/dem-replay,$(DEM_REPLAY)),@$(refuse_drains)))
 endif
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
 ifdef really

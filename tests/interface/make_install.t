@@ -86,6 +86,8 @@ refused 'an option that is none' 64 '--sets: no such option' run own.json --sets
 refused 'grains that are not there' 66 'no-grains.txt: no such file' run own.json --import=no-grains.txt
 refused 'a key that is none, before any work' 65 'crackstats.slice: unknown key' \
     run 'scenes/small scene.json' --set crackstats.slice=3 --name=never
+refused 'a layer that drains by itself' 65 'samples/craquelure-wet-40.json: dem-replay.capillary drains the packing itself' \
+    run craquelure-wet-40 --name=never
 is 'no work was done' no "$([[ -e runs/never ]] && echo yes || echo no)"
 echo 'three 2 1' >words.txt
 refused 'the status is that of the stage that failed' 65 'words.txt: line 1: must be four numbers' \

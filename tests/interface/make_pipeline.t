@@ -17,7 +17,10 @@ name=${0##*/} sets=() inputs=()
 while (( $# )); do
     case $1 in
     --version) echo "$name $(<"$(dirname "$0")/$name.version")"; exit ;;
-    --parameters) [[ $(<"$scene") != *"wrong-$name"* ]]; exit ;;
+    --parameters)
+        jq -c --arg name "$name" '.[$name] // {}' "$scene"
+        [[ $(<"$scene") != *"wrong-$name"* ]]
+        exit ;;
     -p) scene=$2; shift ;;
     --set) sets+=("$2"); shift ;;
     -o) output=$2; shift ;;
@@ -378,6 +381,22 @@ is 'a layer of no scene' 'nowhere.json: no such file' "$(make -n craquelure SCEN
 touch grains.txt
 is 'several seeds of grains that do not change' 'CRAQUELURE_SEEDS: one only' \
     "$(make -n craquelure SCENE=samples/stiff-5x5x10.json IMPORT=grains.txt CRAQUELURE_SEEDS='1 2' 2>&1 | grep -o 'CRAQ[^,]*')"
+
+# A layer that dem-replay drains takes no drying.
+jq '.["dem-replay"].capillary = {"suction": 1e6}' $scene >samples/drains.json
+for goal in run report demo; do
+    : >ran
+    is "make $goal of a layer that drains is refused" 2 "$(make $goal SCENE=samples/drains.json >said 2>&1; echo $?)"
+    is "make $goal: in a line that says what to do" 'make craquelure SCENE=samples/drains.json' \
+        "$(grep -c . <(grep -v '^make: ' said) | grep -x 1 >/dev/null && grep -o 'make craquelure .*' said)"
+    is "make $goal: before anything runs" '' "$(names <ran)"
+done
+mkdir own
+cp stage own/dem-replay
+echo 1 >own/dem-replay.version
+: >ran
+make run SCENE=samples/drains.json DEM_REPLAY=own/dem-replay >said 2>&1
+is 'but not where another program replays' 1 "$(grep -cx dem-replay ran)"
 
 # --- what a run comes down to, in a line ---------------------------------------------------
 
