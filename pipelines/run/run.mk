@@ -69,8 +69,7 @@ headline = printf '%s' '$2' && jq -rf pipelines/run/headline.jq --arg draws 'dra
 # --- one scene ------------------------------------------------------------------------
 
 .PHONY: run report simulate
-# Not beside craquelure, which fills the same folder in its own way.
-ifneq ($(if $(filter craquelure,$(MAKECMDGOALS)),,$(SCENE)),)
+ifneq ($(SCENE),)
 run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)

@@ -382,6 +382,13 @@ touch grains.txt
 is 'several seeds of grains that do not change' 'CRAQUELURE_SEEDS: one only' \
     "$(make -n craquelure SCENE=samples/stiff-5x5x10.json IMPORT=grains.txt CRAQUELURE_SEEDS='1 2' 2>&1 | grep -o 'CRAQ[^,]*')"
 
+# Both make a folder of the scene's name.
+cp $scene samples/layer.json
+both=$(make -n run craquelure SCENE=samples/layer.json | grep -o 'output=[^ ]*' | sort)
+is 'a run of a layer that cracks, and its polygons, share no file' '' "$(uniq -d <<<"$both")"
+is 'each has a table of its own' 'output=build/runs/layer/crackstats.json output=build/runs/layer/polygons.json' \
+    "$(grep '\.json$' <<<"$both" | names)"
+
 # A layer that dem-replay drains takes no drying.
 jq '.["dem-replay"].capillary = {"suction": 1e6}' $scene >samples/drains.json
 for goal in run report demo; do

@@ -28,8 +28,9 @@ $(call dem-replay,$(craquelure)/seed-$1/response.h5,$(craquelure_scene),$(call c
 endef
 $(foreach seed,$(craquelure_seeds),$(call craquelure_layer,$(seed)))
 craquelure_responses := $(craquelure_seeds:%=$(craquelure)/seed-%/response.h5)
-$(call crackstats,$(craquelure)/crackstats.json,$(craquelure_scene),polygons=true same_bonds=false $(call craquelure_set,crackstats),$(craquelure_responses))
-craquelure_files := $(firstword $(craquelure_responses)) $(craquelure)/crackstats.json
+# Not crackstats.json, which is what `make run` makes of the same scene by drying it.
+$(call crackstats,$(craquelure)/polygons.json,$(craquelure_scene),polygons=true same_bonds=false $(call craquelure_set,crackstats),$(craquelure_responses))
+craquelure_files := $(firstword $(craquelure_responses)) $(craquelure)/polygons.json
 $(call report,$(craquelure)/polygons.png,studies/craquelure/report,$(craquelure_files),polygons $(craquelure_files))
 $(call report,$(craquelure)/drying.png,studies/craquelure/report,$(craquelure_files),drying $(craquelure_files))
 $(call report,$(craquelure)/film.gif,studies/craquelure/report,$(craquelure_files),film $(craquelure_files))
