@@ -470,6 +470,15 @@ static int estimate(const struct invocation *invocation,
     return STATUS_OK;
 }
 
+static void warn_of_rings(const struct pendular_rings *rings, double suction)
+{
+    if (rings->cut_off)
+        report("rings.left=suction: at %.3g Pa, of a throat of mean radius, %d of %d "
+               "rings would hold more than the cube of their effective radius, and are "
+               "taken to hold that: rings.left=volume says how much rings hold",
+               suction, rings->cut_off, rings->count);
+}
+
 int main(int argc, char **argv)
 {
     struct force_parameters parameters;
@@ -498,6 +507,7 @@ int main(int argc, char **argv)
                         &loads, &rings, &reason);
     if (status) die(status, "%s: %s", input_name(input->path), reason.text);
     sectors_free(&sectors);
+    if (!invocation.quiet) warn_of_rings(&rings, law.uniform);
 
     struct liquid_record record =
         read_record(input, &network, parameters.suction == SUCTION_FIELD,

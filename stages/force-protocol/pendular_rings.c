@@ -16,7 +16,8 @@
 
 #include <stdlib.h>
 
-// Dimensionless volumes between which the one in equilibrium is looked for.
+// Dimensionless volumes between which the one in equilibrium is looked for. Where even
+// the largest has more suction than the liquid, the ring is taken to have that volume.
 static const double MIN_VOLUME = 1e-9, MAX_VOLUME = 1;
 
 static double cubed(double x)
@@ -174,6 +175,7 @@ struct ring {
     double gap;       // m; 0 where they overlap
     double angle;     // sum over the throats beside the face, each from both its sides;
                       // 4 pi where the foot lies within it
+    double volume;    // m3
     double force;     // N
 };
 
@@ -237,8 +239,16 @@ static struct ring *list_rings(struct sectors *sectors, int n)
 static enum status solve(const struct ring_law *law, struct ring *ring,
                          struct reason *reason)
 {
-    double volume;
-    return solve_ring(ring->radius, ring->gap, law, &volume, &ring->force, reason);
+    return solve_ring(ring->radius, ring->gap, law, &ring->volume, &ring->force,
+                      reason);
+}
+
+// Whether the ring in equilibrium would be larger than find_volume looks.
+static bool is_cut_off(const struct ring_law *law, const struct ring *ring)
+{
+    const double largest = bridge_of(ring->radius, law, MAX_VOLUME).volume;
+    return law->rule == RING_SUCTION && ring->grain[1] >= 0 &&
+           ring->volume > (1 - 1e-9) * largest;
 }
 
 static int by_shape(const void *a, const void *b)
@@ -279,7 +289,10 @@ static enum status solve_all(const struct ring_law *law, int n, struct ring *rin
     enum status status = STATUS_OK;
     if (failed < n) status = solve(law, list[failed], &why);
     for (int k = 1; k < count; k++)
-        if (by_shape(&list[k - 1], &list[k]) == 0) list[k]->force = list[k - 1]->force;
+        if (by_shape(&list[k - 1], &list[k]) == 0) {
+            list[k]->volume = list[k - 1]->volume;
+            list[k]->force = list[k - 1]->force;
+        }
     const int32_t *grain = failed < n ? list[failed]->grain : NULL;
     free(list);
     if (status == STATUS_OK) return STATUS_OK;
@@ -307,6 +320,7 @@ enum status find_pendular_rings(struct sectors *sectors, const struct ring_law *
     const enum status status = solve_all(law, n, ring, reason);
     for (int r = 0; r < n && !status; r++) {
         rings->count += ring[r].force != 0;
+        rings->cut_off += is_cut_off(law, &ring[r]);
         rings->largest = fmax(rings->largest, fabs(ring[r].force));
     }
     if (!status) rings->patches = collect_patches(sectors, part_of_ring, ring);

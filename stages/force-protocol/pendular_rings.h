@@ -23,6 +23,8 @@ struct ring_law {
 struct pendular_rings {
     struct patches patches; // N, for a unit of a throat's emptiness
     int count;              // pairs of grains that can hold one
+    int cut_off;            // of these, in equilibrium only with more than the cube of
+                            // the effective radius, and taken to hold that
     double largest;         // N, force of a whole ring
 };
 

@@ -105,4 +105,20 @@ dried(at("packing"))
 refused = subprocess.run([f"{BIN}/force-protocol", "-q", *sets("rings.left=drying"), at("drying")], capture_output=True, text=True, check=False)
 ok(refused.returncode == 65 and "rings.left=drying needs it: dry with rings=isolated, joined or films" in refused.stderr,
    "a drying without rings is refused", refused.stderr)
+
+# ---- rings of liquid in equilibrium that would be larger than bridges are solved for ------
+
+# Between a large grain and a speck on it a ring of the cube of the effective radius still has a
+# suction, above that of wide throats; between equal grains it has none (docs/bridges.md).
+for speck in 0.01, 0.5:
+    touching = np.full(3, R + (1 + speck) * R / 3**0.5)
+    grains = np.column_stack([(2 * grid[grid.max(axis=1) < 3] + 1) * R, np.full(27, R)])
+    np.savetxt(at("specks.txt"), np.vstack([grains, [*touching, speck * R]]), fmt="%.17g")
+    run("pack", "-q", *sets("method=import", "lower=[0,0,0]", f"upper={[6 * R] * 3}", "bonds=none", "check=none"),
+        at("specks.txt"), "-o", at("packing"))
+    dried(at("packing"))
+    said = subprocess.run([f"{BIN}/force-protocol", *sets("rings.left=suction", "steps=2"), at("drying"), "-o", at("forces")],
+                          capture_output=True, text=True, check=True).stderr
+    ok(("1 of 55 rings would hold more than the cube" in said) == (speck < 0.1), f"a speck of {speck} grains: whether its ring is cut off is said", said)
+
 done()
