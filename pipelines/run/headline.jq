@@ -21,6 +21,8 @@ def word(one; many): if . == 1 then "1 \(one)" else "\(.) \(many)" end;
 + (.mean.unsettled as $u
     | if $u == null then ""
       elif $u.loads == 0 then "; every load came to rest"
-      else "; " + ($u.loads | few | word("load"; "loads")) + (if $runs > 1 then " a run" else "" end)
-        + " did not come to rest, " + ($u.cracks | few | word("bond"; "bonds")) + " broke under "
-        + (if ($u.loads | few) == 1 then "it" else "them" end) end)
+      else "; grains still moved at the end of " + ($u.loads | few | word("load"; "loads"))
+        + (if $runs > 1 then " a run" else "" end) + ", under which "
+        + ($u.cracks | few | word("bond"; "bonds")) + " broke"
+        + (if $u.cracks == 0 then ""
+           else ": do as many break with twice the dem-replay.cycles and most_cycles?" end) end)
