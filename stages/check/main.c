@@ -115,7 +115,9 @@ static void judge_weight(const struct bond_numbers *weight, struct findings *fin
 static bool have_other_units(const struct findings *findings)
 {
     for (int k = 0; k < findings->count; k++)
-        if (!strcmp(findings->item[k].name, "units")) return true;
+        if (!strcmp(findings->item[k].name, "units") ||
+            !strcmp(findings->item[k].name, "radii"))
+            return true;
     return false;
 }
 
@@ -162,6 +164,7 @@ static struct packing read_input(const char *path, struct check_parameters *para
         read_grains(path, NULL, parameters->frame, &has_box, inputs);
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
                    has_box);
+    refuse_large_radii(&packing, path);
     return packing;
 }
 

@@ -42,6 +42,7 @@ static struct packing import(const char *path, const struct pack_parameters *par
         packing.periodic[axis] = parameters->domain.periodic[axis];
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
                    has_box);
+    refuse_large_radii(&packing, path);
     apply_box(&packing, parameters);
     return packing;
 }

@@ -149,6 +149,23 @@ for title, position, radius, box, wrong, packed, mends in BAD:
                and np.allclose(file["particles/radius"], r, rtol=1e-12, atol=0),
                f"{title}: to the grains themselves")
 
+# A column in another unit than the others: too small radii are said, too large ones refused at once,
+# for each would have all others as neighbours.
+with_gas = np.concatenate([x, 20 * gas]), np.append(r, r)
+for unit in 1e-3, 1e-6:
+    status, report, agree = check(text("bad", x, unit * r))
+    told = {f["name"]: f["text"] for f in report["findings"]}
+    ok(status == 1 and agree and f"Times {1 / unit:g} they" in told.get("radii", "") and "defaults" not in told,
+       f"radii times {unit:g}", report["findings"])
+    many = 30 * np.indices((27, 27, 27)).reshape(3, -1).T * np.median(r)
+    big = text("big", many, np.full(len(many), 10 * np.median(r) / unit))
+    for stage in ("check",), ("pack", *sets("method=import")):
+        status, _, said = call(*stage, big)
+        ok(status == 65 and len(said.splitlines()) == 1 and f"Times {unit:g} they" in said, f"{stage[0]}: radii times {1 / unit:g}", said)
+for title, position, radius in [("grains", x, r), ("diameters", x, 2 * r), ("grains far apart", 30 * x, r),
+                                ("some far away", *with_gas)]:
+    ok("radii" not in [f["name"] for f in check(text("bad", position, radius))[1]["findings"]], f"{title} are in one unit")
+
 # One grain stands out of the top; docs/your-grains.md leaves it out and lowers the box.
 top = text("top", np.vstack([x, [high[0] / 2, high[1] / 2, 2 * high[2]]]), np.append(r, r[0]))
 status, report, _ = check(top, *near)

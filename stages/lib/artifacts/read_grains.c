@@ -10,6 +10,7 @@
 #include "artifacts/artifact.h"
 #include "basics/status.h"
 #include "formats/grains.h"
+#include "geometry/radius_unit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -84,4 +85,14 @@ void convert_grains(struct packing *packing, double by, bool diameters, bool has
         packing->body[b].upper = scale(by, packing->body[b].upper);
     }
     if (!has_box && diameters) box_around(packing);
+}
+
+void refuse_large_radii(const struct packing *packing, const char *path)
+{
+    const double unit = radius_unit(packing);
+    if (unit < 1)
+        die(STATUS_BAD_DATA,
+            "%s: /particles/radius: radii in another unit than places? Times %g they "
+            "would make a body; as they are, each grain overlaps with most others",
+            input_name(path), unit);
 }

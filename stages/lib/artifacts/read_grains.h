@@ -21,4 +21,8 @@ struct packing read_grains(const char *path, const char *schema, int64_t frame,
 // of PACKING, its box included. Bonds stay.
 void convert_grains(struct packing *packing, double by, bool diameters, bool has_box);
 
+// Exits 65 where radii are 1000 times too large for the places, or more: each grain
+// would overlap with all others.
+void refuse_large_radii(const struct packing *packing, const char *path);
+
 #endif

@@ -63,6 +63,11 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
                     "are lengths "
                     "in metres? pack.import.scale is metres per unit of the file",
                     facts->median);
+    if (facts->radius_unit > 1)
+        add_finding(findings, FINDING_WRONG, "radii",
+                    "the grains fill %.2g of the box: radii in another unit than "
+                    "places? Times %g they would make a body",
+                    1 - facts->porosity, facts->radius_unit);
     if (facts->largest > 1000 * facts->median)
         add_finding(
             findings, FINDING_WRONG, "sizes",

@@ -27,9 +27,10 @@ struct packing_facts {
     int halved;              // pairs that overlap still when all radii are halved
     int overlapping;         // grains with an overlap above OVERLAP_MOST
     double overlap;
-    int worst[2]; // the largest, of the smaller radius
-    int free;     // grains that touch neither grain nor wall
-    int plane;    // axis along which all centres lie in one plane; -1: none
+    int worst[2];       // the largest, of the smaller radius
+    int free;           // grains that touch neither grain nor wall
+    double radius_unit; // what radii must be times to be in the unit of the places
+    int plane;          // axis along which all centres lie in one plane; -1: none
 };
 
 // Share of the smaller radius: a larger overlap closes throats between grains.

@@ -15,6 +15,7 @@
 #include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "geometry/neighbours.h"
+#include "geometry/radius_unit.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -225,6 +226,7 @@ struct packing_facts packing_facts(const struct packing *packing,
                                   .same = {-1, -1},
                                   .worst = {-1, -1},
                                   .plane = -1};
+    facts.radius_unit = radius_unit(packing);
     measure_sizes(packing, &facts);
     measure_extent(packing, &facts);
     measure_walls(packing, &facts);
