@@ -21,6 +21,7 @@
 #include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "parameters/conditions.h"
+#include "rounded.h"
 #include "tell.h"
 
 #include <math.h>
@@ -126,13 +127,14 @@ static bool have_other_units(const struct findings *findings)
 static struct findings judge(const struct packing *packing,
                              const struct packing_facts *facts,
                              const struct bond_facts *bonds,
-                             const struct bond_numbers *weight)
+                             const struct bond_numbers *weight, double gap)
 {
     struct findings findings = {0};
     if (!facts->n)
         add_finding(&findings, FINDING_WRONG, "grains", "there are no grains");
     if (!facts->n) return findings;
     judge_packing(packing, facts, &findings);
+    judge_rounding(packing, facts, gap, &findings);
     judge_bonds(packing, bonds, facts->n, bottom_of(facts), &findings);
     judge_free(facts, &findings);
     if (have_other_units(&findings)) return findings;
@@ -183,7 +185,7 @@ int main(int argc, char **argv)
     const struct bond_facts bonds = bond_facts(&body);
     const struct bond_numbers weight =
         expected_bond_numbers(&parameters.material, &body, &facts);
-    const struct findings findings = judge(&body, &facts, &bonds, &weight);
+    const struct findings findings = judge(&body, &facts, &bonds, &weight, gap);
     const struct checked checked = {
         &body, &contacts, &facts, &bonds, &findings, &weight, &parameters.material};
     const int wrong = count_wrong(&findings);

@@ -245,6 +245,26 @@ for width, narrow in (3e-6, True), (4e-6, False):
     ok(("narrow" in [f["name"] for f in report["findings"]]) == narrow,
        f"a box {0.5 * width:g} m wide {'may hide' if narrow else 'shows'} contacts across both sides", report["findings"])
 
+# ---- places with too few digits ------------------------------------------------------------
+
+for step in 1e-6, 1e-7, 5e-8:
+    coarse = np.rint(x / step) * step
+    apart = distance(coarse)[first, second] - sums
+    lost = ((apart < step) & (apart > 1e-6 * sums)).sum()
+    path = text("coarse", coarse, r)
+    status, report, agree = check(path)
+    told = {f["name"]: f for f in report["findings"]}.get("rounded", {"severity": "", "text": ""})
+    ok(agree and told["severity"] == "note" and f"multiples of {step:g} m, and {lost} pairs" in told["text"],
+       f"places rounded to {step:g} m", (lost, report["findings"]))
+    wide = told["text"].rpartition("pack.")[2]
+    status, report, _ = check(path, *sets(wide))
+    ok("rounded" not in [f["name"] for f in report["findings"]], f"{wide} bonds all that may touch", report["findings"])
+cube = 1e-4 * np.indices((6, 6, 6)).reshape(3, -1).T
+for title, position, radius in [("all digits", x, r), ("a lattice of unequal grains", cube, random.uniform(45e-6, 50e-6, 216)),
+                                ("a lattice whose grains are apart", cube, np.full(216, 49.9e-6)),
+                                ("grains far apart", np.rint(30 * x / 1e-7) * 1e-7, r)]:
+    ok("rounded" not in [f["name"] for f in check(text("fine", position, radius))[1]["findings"]], f"{title}: no note")
+
 # ---- weight -------------------------------------------------------------------------------
 
 # Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.
