@@ -61,25 +61,20 @@ struct forces find_forces(const struct grains *grains, const struct cells *cells
 {
     struct forces forces = {.viscous = NEW_ARRAY(struct vector, grains->n_base),
                             .pressure = NEW_ARRAY(struct vector, grains->n_base)};
-    double volume = 0, pressure_sum = 0;
     for (int t = 0; t < throats->n; t++) {
         const struct throat *throat = &throats->throat[t];
         const double drop = pressure_drop(pressures, grains, cells, throat);
         add_throat(throat, drop, &forces);
-        double sum = 0;
         for (int end = 0; end < 2; end++) {
             const double pressure = pore_pressure(pressures, cells, throat->cell[end]);
             add_wall(cells, throat, end, pressure, &forces);
-            sum += pressure;
         }
-        volume += throat->volume;
-        pressure_sum += throat->volume * 0.5 * sum;
         add_to(&forces.velocity, throat->conductance * drop,
                throat_step(grains, cells, throat));
     }
     const struct vector box = grains->box;
     forces.velocity = scale(1 / box_volume(box), forces.velocity);
-    forces.mean_pressure = volume > 0 ? pressure_sum / volume : 0;
+    forces.mean_pressure = mean_pressure(pressures, grains, throats);
     return forces;
 }
 

@@ -7,7 +7,8 @@
 // parts, is small relative to the throughput; the first correction is nearly the
 // solution. A set of pores without a path to an imposed pressure (a pocket) is
 // singular: one of its pores is pinned, and afterwards the pocket is shifted to the
-// mean pressure around it.
+// mean pressure around it. A box without any imposed pressure is one pocket; there the
+// mean pressure of the fluid is 0 (mean_pressure).
 //
 // A fall of pressure over a throat of pores that are nearly equal would cancel:
 // pressures are sums of two doubles (compensated.h), and pressure_drop subtracts these.
@@ -352,14 +353,51 @@ static enum status close_balances(const struct balance *balance,
 
 // ---- what follows -------------------------------------------------------------------
 
+double mean_pressure(const struct pressures *pressures, const struct grains *grains,
+                     const struct throats *throats)
+{
+    double volume = 0, sum = 0;
+    for (int t = 0; t < throats->n; t++) {
+        const struct throat *throat = &throats->throat[t];
+        volume += throat->volume;
+        for (int end = 0; end < 2; end++) {
+            const int32_t node = pressures->node_of_cell[throat->cell[end]];
+            sum += 0.5 * throat->volume * compensated_value(pressures->value[node]);
+        }
+    }
+    const double middle = 0.5 * dot(pressures->gradient, grains->box);
+    return volume > 0 ? sum / volume + middle : 0;
+}
+
+// The mean_pressure of each pocket, at its root; pores without volume do not count.
+// POCKET, MEAN (n_node).
+static void find_means(const struct balance *balance, const int32_t *pocket,
+                       const struct pressures *pressures, double *mean)
+{
+    const double middle = 0.5 * dot(pressures->gradient, balance->grains->box);
+    double *volume = NEW_ARRAY(double, pressures->n_node);
+    for (int t = 0; t < balance->throats->n; t++) {
+        const struct throat *throat = &balance->throats->throat[t];
+        for (int end = 0; end < 2; end++) {
+            const int32_t node = pressures->node_of_cell[throat->cell[end]];
+            if (pocket[node] < 0) continue;
+            volume[pocket[node]] += throat->volume;
+            mean[pocket[node]] +=
+                throat->volume * compensated_value(pressures->value[node]);
+        }
+    }
+    for (int i = 0; i < pressures->n_node; i++)
+        mean[i] = volume[i] > 0 ? mean[i] / volume[i] + middle : 0;
+    free(volume);
+}
+
 // Shifts each pocket to the mean pressure of the pores around it, weighted by facet
-// area; one without any pores around it to a mean of 0.
+// area; one without any pores around it, as the whole fluid, to a mean of 0.
 static void level_pockets(const struct balance *balance, const int32_t *pocket,
                           struct pressures *pressures)
 {
     const int n = pressures->n_node;
     double *area = NEW_ARRAY(double, n), *sum = NEW_ARRAY(double, n);
-    double *inside = NEW_ARRAY(double, n), *count = NEW_ARRAY(double, n);
     for (int t = 0; t < balance->throats->n; t++) {
         const struct throat *throat = &balance->throats->throat[t];
         int32_t node[2];
@@ -375,22 +413,17 @@ static void level_pockets(const struct balance *balance, const int32_t *pocket,
             sum[here] += norm(throat->area) * (end == 0 ? drop : -drop);
         }
     }
-    for (int i = 0; i < n; i++)
-        if (pocket[i] >= 0) {
-            inside[pocket[i]] += compensated_value(pressures->value[i]);
-            count[pocket[i]]++;
-        }
+    double *mean = NEW_ARRAY(double, n);
+    find_means(balance, pocket, pressures, mean);
     for (int i = 0; i < n; i++) {
         const int32_t here = pocket[i];
         if (here < 0) continue;
-        const double above =
-            area[here] > 0 ? sum[here] / area[here] : inside[here] / count[here];
+        const double above = area[here] > 0 ? sum[here] / area[here] : mean[here];
         compensated_add(&pressures->value[i], -above);
     }
     free(area);
     free(sum);
-    free(inside);
-    free(count);
+    free(mean);
 }
 
 // The inflow through each wall: the flow from its pores to others, less their sources.

@@ -42,11 +42,11 @@ struct pressures {
 };
 
 // SOURCE (n_pore) is the inflow of each pore from moving grains, or NULL. A pocket
-// takes the mean pressure of the pores around it. Pores in an edge between walls of
-// imposed pressure belong to the lower wall. STATUS_BAD_DATA: what flows into a pocket
-// cannot leave it. STATUS_NOT_CONVERGED: the imbalance stays above the tolerance. The
-// caller frees with pressures_free. The number of threads does not matter. Cost: one
-// factor, or iterations of O(throats) each.
+// takes the mean pressure of the pores around it; without any, its mean_pressure is 0.
+// Pores in an edge between walls of imposed pressure belong to the lower wall.
+// STATUS_BAD_DATA: what flows into a pocket cannot leave it. STATUS_NOT_CONVERGED: the
+// imbalance stays above the tolerance. The caller frees with pressures_free. The number
+// of threads does not matter. Cost: one factor, or iterations of O(throats) each.
 enum status solve_pressures(const struct grains *grains, const struct cells *cells,
                             const struct throats *throats,
                             const struct conditions *conditions, const double *source,
@@ -64,6 +64,11 @@ int feeding_wall(const struct conditions *conditions, unsigned walls);
 // THROAT to the second, the mean gradient included.
 double pressure_drop(const struct pressures *pressures, const struct grains *grains,
                      const struct cells *cells, const struct throat *throat);
+
+// Mean over the fluid, Pa, weighted by volume; 0 where there is none. Of the mean
+// gradient, that in the middle of the box: no pore counts by the image that it has.
+double mean_pressure(const struct pressures *pressures, const struct grains *grains,
+                     const struct throats *throats);
 
 // p_i, Pa. With the mean gradient at the centre of CELL.
 double pore_pressure(const struct pressures *pressures, const struct cells *cells,

@@ -213,6 +213,17 @@ with scratch() as folder:
            as_is["walls/inflow"][:])
         if "false" in repeats:
             continue
+        # The mean pressure too, whatever the grains' numbers; 0 where no wall has one.
+        for wall in {}, {"flux.z_lower": 1, "flux.z_upper": -1}:
+            above_now = {"along": "none" if wall else "y", "pressure.y_lower": "null", "pressure.y_upper": "null", **wall}
+            means = []
+            for order, by in (np.arange(25), 0), (generator.permutation(25), 0), (np.arange(25), .37):
+                rows = np.column_stack([(grains[order][:, :2] + by) % 1, grains[order][:, 2:]])
+                numbered = pack(rows, at("gauge"), periodic="[true,true,false]" if wall else repeats)
+                result = flow(numbered, **above_now)
+                means.append(result["summary"].attrs["mean_pressure"])
+                spread = np.ptp(result["pores/pressure"][:])
+            ok(spread > 0 and np.abs(means).max() < 1e-12 * spread, f"the mean pressure is 0 ({wall or 'a gradient'})", (means, spread))
         boxes = generator.integers(-1, 2, (25, 3))
         strained(grains, "far", [1, 1, 1])
         with h5py.File(at("far"), "r+") as far:  # places boxes away, and velocities there
