@@ -79,9 +79,11 @@ static void say_repeated(FILE *page, const json_t *repeated)
         json_object_get(json_object_get(repeated, "confidence_interval"), "cracks"),
         "total");
     if (!json_is_array(interval) || isnan(total)) return;
-    put_line(page, " Over %g runs %.3g broke on average (%.3g to %.3g: %s).", runs,
-             total, fmax(0, json_number_value(json_array_get(interval, 0))),
-             json_number_value(json_array_get(interval, 1)),
+    char text[3][40];
+    put_line(page, " Over %g runs %s broke on average (%s to %s: %s).", runs,
+             plain(total, 3, text[0]),
+             plain(fmax(0, json_number_value(json_array_get(interval, 0))), 3, text[1]),
+             plain(json_number_value(json_array_get(interval, 1)), 3, text[2]),
              json_string_value(json_object_get(repeated, "interval_of"))
                  ? json_string_value(json_object_get(repeated, "interval_of"))
                  : "confidence interval");

@@ -101,3 +101,14 @@ const char *with_unit(double value, const char *unit, char text[40])
              scaled, prefix[k], unit);
     return text;
 }
+
+const char *plain(double value, int digits, char text[40])
+{
+    snprintf(text, 40, "%.*e", digits - 1, value);
+    const double rounded = strtod(text, NULL), size = fabs(rounded);
+    if (size >= 1 && size < 1e9 && log10(size) >= digits)
+        snprintf(text, 40, "%.0f", rounded);
+    else
+        snprintf(text, 40, "%.*g", digits, value);
+    return text;
+}

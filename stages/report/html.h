@@ -28,4 +28,8 @@ json_t *text_json(const char *text);
 // 5e-7 and "m": "500 nm"; three digits. Returns TEXT. A value of 0 has no prefix.
 const char *with_unit(double value, const char *unit, char text[40]);
 
+// VALUE to DIGITS digits, as %g, but without an exponent below 1e9: "1280". Returns
+// TEXT.
+const char *plain(double value, int digits, char text[40]);
+
 #endif

@@ -333,10 +333,13 @@ static void say_broken(FILE *page, const struct study *study, int group)
 {
     const struct sample broken = sample_of(study, 1, group);
     const double half = half_width(broken, confidence);
-    if (broken.n) put_line(page, "%.4g bonds broke on average", sample_mean(broken));
+    const double mean = broken.n ? sample_mean(broken) : NAN;
+    char text[2][40];
+    if (broken.n) put_line(page, "%s bonds broke on average", plain(mean, 4, text[0]));
     if (isfinite(half))
-        put_line(page, " (95 %% interval %.4g to %.4g)",
-                 fmax(0, sample_mean(broken) - half), sample_mean(broken) + half);
+        put_line(page, " (95 %% interval %s to %s)",
+                 plain(fmax(0, mean - half), 4, text[0]),
+                 plain(mean + half, 4, text[1]));
     free((void *)broken.value);
 }
 
@@ -401,7 +404,8 @@ static void put_row(FILE *page, const struct study *study, const struct row *row
     }
     for (int c = 0; c < COLUMNS; c++) {
         char text[40] = "";
-        if (isfinite(row->value[c])) snprintf(text, sizeof text, "%.5g", row->value[c]);
+        const double value = row->value[c];
+        if (isfinite(value)) plain(value, value == rint(value) ? 9 : 5, text);
         if (is_known(study, c)) put_cell(page, "<td>", text, "</td>");
     }
     fputs("</tr>\n", page);
@@ -417,17 +421,48 @@ void put_runs(FILE *page, const struct study *study)
     fputs("</tbody></table>\n", page);
 }
 
-enum { WIDE = 520, LEFT = 170, RIGHT = 30, LINE = 34 };
+enum { WIDE = 520, RIGHT = 30, LINE = 34, CHARACTER = 7 };
 
 struct axis {
     double least, most;
+    int left;  // where it begins, pixels of WIDE
+    int above; // of the names of groups above their points; 0: they are to the left
 };
+
+// Names go to the left where all fit there, else each above its points.
+static void make_room(const struct study *study, struct axis *axis)
+{
+    enum { BESIDE = 170 };
+    axis->left = BESIDE;
+    for (int group = 0; group < study->n_group; group++)
+        if ((strlen(group_of(study, group)) + 1) * CHARACTER > BESIDE)
+            *axis = (struct axis){axis->least, axis->most, RIGHT, 18};
+}
+
+// A name that is too long for the whole picture ends in an ellipsis: the caption has
+// all of it. Bytes of one character stay together.
+static void put_name(FILE *page, const char *name, struct axis axis, int top)
+{
+    const size_t most = (WIDE - 2 * CHARACTER) / CHARACTER;
+    size_t length = strlen(name);
+    const bool is_cut = axis.above && length > most;
+    for (length = is_cut ? most : length; (name[length] & 0xC0) == 0x80;)
+        length--;
+    char *shown = duplicate(name, length + 1, 1);
+    shown[length] = 0;
+    fprintf(page, "<text x=\"%d\" y=\"%d\" text-anchor=\"%s\">",
+            axis.above ? 0 : axis.left - 10, top + (axis.above ? 13 : LINE / 2 + 4),
+            axis.above ? "start" : "end");
+    put_text(page, shown);
+    fputs(is_cut ? "…</text>" : "</text>", page);
+    free(shown);
+}
 
 // Pixels from the left, of WIDE.
 static double on_axis(struct axis axis, double value)
 {
-    return LEFT +
-           (WIDE - LEFT - RIGHT) * (value - axis.least) / (axis.most - axis.least);
+    return axis.left +
+           (WIDE - axis.left - RIGHT) * (value - axis.least) / (axis.most - axis.least);
 }
 
 // Points of one group, each a little off the line that others do not hide it. Seven
@@ -436,11 +471,11 @@ static void put_strip(FILE *page, const struct study *study, int column, int gro
                       struct axis axis)
 {
     const struct sample sample = sample_of(study, column, group);
-    const double y = LINE * (group + 0.5), mean = sample.n ? sample_mean(sample) : NAN,
+    const int top = (LINE + axis.above) * group;
+    const double y = top + axis.above + LINE / 2.0,
+                 mean = sample.n ? sample_mean(sample) : NAN,
                  half = half_width(sample, confidence);
-    fprintf(page, "<text x=\"%d\" y=\"%.0f\" text-anchor=\"end\">", LEFT - 10, y + 4);
-    put_text(page, group_of(study, group));
-    fputs("</text>", page);
+    put_name(page, group_of(study, group), axis, top);
     if (isfinite(half))
         fprintf(page, "<path class=\"interval\" d=\"M%.1f %.0fH%.1f\"/>",
                 on_axis(axis, fmax(mean - half, axis.least)), y,
@@ -458,7 +493,7 @@ static void put_strip(FILE *page, const struct study *study, int column, int gro
 // margin of a twentieth on both sides.
 static struct axis axis_of(const struct study *study, int column)
 {
-    struct axis axis = {INFINITY, -INFINITY};
+    struct axis axis = {.least = INFINITY, .most = -INFINITY};
     double least = INFINITY;
     for (int group = 0; group < study->n_group; group++) {
         const struct sample sample = sample_of(study, column, group);
@@ -478,6 +513,7 @@ static struct axis axis_of(const struct study *study, int column)
     axis.least -= margin;
     if (least >= 0) axis.least = fmax(axis.least, 0);
     axis.most += margin;
+    make_room(study, &axis);
     return axis;
 }
 
@@ -489,37 +525,39 @@ static void put_caption(FILE *page, const struct study *study, int column)
         const struct sample sample = sample_of(study, column, group);
         const double half = half_width(sample, confidence);
         put_line(page, "%s%s: ", group ? "; " : "", group_of(study, group));
-        if (sample.n) put_line(page, "mean %.4g", sample_mean(sample));
+        const double mean = sample.n ? sample_mean(sample) : NAN;
+        char text[2][40];
+        if (sample.n) put_line(page, "mean %s", plain(mean, 4, text[0]));
         if (isfinite(half))
-            put_line(page, " (%.4g to %.4g)", sample_mean(sample) - half,
-                     sample_mean(sample) + half);
+            put_line(page, " (%s to %s)", plain(mean - half, 4, text[0]),
+                     plain(mean + half, 4, text[1]));
         put_line(page, sample.n ? ", %d runs" : "no run says it", sample.n);
         free((void *)sample.value);
     }
     fputs("</p>\n", page);
 }
 
-// An SVG of its own for each column, under its name: a line of LINE pixels a group, the
-// axis below with its ends and middle. The text below has the same in words.
+// An SVG of its own for each column, under its name: a line for each group, the axis
+// below with its ends and middle. The text below has the same in words.
 void put_distributions(FILE *page, const struct study *study)
 {
     for (int c = 0; c < COLUMNS; c++) {
         if (!scatters(study, c)) continue;
         const struct axis axis = axis_of(study, c);
-        const int high = LINE * study->n_group;
+        const int high = (LINE + axis.above) * study->n_group;
         put_cell(page, "<figure><figcaption>", column_name[c], "</figcaption>");
         fprintf(page, "<svg class=\"strip\" viewBox=\"0 0 %d %d\" role=\"img\" ", WIDE,
                 high + 40);
         put_cell(page, "aria-label=\"", column_name[c], ", a point a run\">");
         for (int group = 0; group < study->n_group; group++)
             put_strip(page, study, c, group, axis);
-        fprintf(page, "<path class=\"axis\" d=\"M%d %dH%d\"/>", LEFT, high,
+        fprintf(page, "<path class=\"axis\" d=\"M%d %dH%d\"/>", axis.left, high,
                 WIDE - RIGHT);
         for (int k = 0; k <= 2; k++) {
             const double value = axis.least + k * (axis.most - axis.least) / 2;
-            fprintf(page,
-                    "<text x=\"%.0f\" y=\"%d\" text-anchor=\"middle\">%.3g</text>",
-                    on_axis(axis, value), high + 18, value);
+            char text[40];
+            fprintf(page, "<text x=\"%.0f\" y=\"%d\" text-anchor=\"middle\">%s</text>",
+                    on_axis(axis, value), high + 18, plain(value, 3, text));
         }
         fputs("</svg>\n", page);
         put_caption(page, study, c);
@@ -536,8 +574,10 @@ static void put_test(FILE *page, const struct study *study, int column)
     const struct mann_whitney u = mann_whitney_test(a, b);
     if (isfinite(t.p)) {
         put_cell(page, "<tr><th scope=\"row\">", column_name[column], "</th>");
-        fprintf(page, "<td>%.4g</td><td>%.4g</td><td>%.2g</td><td>%.2g</td></tr>\n",
-                sample_mean(a), sample_mean(b), t.p, u.p);
+        char text[2][40];
+        fprintf(page, "<td>%s</td><td>%s</td><td>%.2g</td><td>%.2g</td></tr>\n",
+                plain(sample_mean(a), 4, text[0]), plain(sample_mean(b), 4, text[1]),
+                t.p, u.p);
     }
     free((void *)a.value);
     free((void *)b.value);

@@ -123,6 +123,18 @@ for k, strength in enumerate([20000.0, 30000.0, 40000.0, 50000.0]):
     os.makedirs(at(f"four/{k}"))
     os.rename(at(f"response-{k}.h5"), at(f"four/{k}/response.h5"))
 run("report", at("four"), "-o", at("four.html"))
+
+# Names of groups that do not fit beside the points stand above them, whole.
+for k, strength in enumerate([20000.0, 30000.0]):
+    os.makedirs(at(f"long/{k}"))
+    run("dem-replay", "-q", "-p", at("scene.json"), "--set", f"bond.normal_strength={strength}", "--set", f"bond.shear_strength={strength + 1}",
+        "--set", f"local_damping=0.{6 + k}", f"{paths[0]}/forces.h5", "-o", at(f"long/{k}/response.h5"))
+run("report", at("long"), "-o", at("long.html"))
+svgs = re.findall(r"<svg class=\"strip\".*?</svg>", open(at("long.html")).read(), re.S)
+placed = [re.findall(r'<text x="(\d+)"[^>]* text-anchor="(start|end)">([^<]*)<', svg) for svg in svgs]
+long = [("0", "start", f"normal_strength {s}, shear_strength {s + 1}, local_damping 0.{6 + k}") for k, s in enumerate([20000, 30000])]
+ok(svgs and all(sorted(p[2].split(", ")) == sorted(q[2].split(", ")) and p[:2] == q[:2] for texts in placed for p, q in zip(texts, long, strict=True)),
+   "long names of groups are whole", placed)
 four = html.unescape(open(at("four.html")).read())
 headline = re.search(r'id="headline">(.*?)</p>', four, re.S)[1]
 ok("4 runs in 4 groups: normal_strength 20000: " in headline and headline.count("bonds broke") == 3 and headline.endswith("; and so on below."),
