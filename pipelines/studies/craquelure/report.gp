@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # A layer from above. Variables: tables, the folder that pipelines/studies/craquelure/report makes; n views of
 # grains with titles between bars; wide and deep, the box in diameters; opened: 1 if the map of when cracks
-# opened comes beside them, of columns a step wide; 2 if it is empty; at_once: the saturation at which all opened, or -1.
+# opened comes beside them, of columns a step wide; 2 if it is empty; at_once: the saturation at which all opened, or -1;
+# legend: commands that draw what colours mean at the foot of a picture of width and height, or "".
 columns = opened ? 2 : (n < 2 ? 1 : 2)
 rows = (n + (opened ? 1 : 0) + columns - 1) / columns
-side = opened ? 520 : 340
-set terminal pngcairo background "#ffffff" font "Helvetica,11" size side * columns + (opened ? 70 : 0), (side + 30) * rows
+side = opened ? 520 : 340; foot = strlen(legend) ? 22 : 0
+set terminal pngcairo background "#ffffff" font "Helvetica,11" size side * columns + (opened ? 70 : 0), (side + 30) * rows + foot
+height = (side + 30.0) * rows + foot
 total = side * columns + (opened ? 70.0 : 0.0)
 set multiplot
 unset key; unset tics; unset border
@@ -17,8 +19,8 @@ do for [k = 1:n] {
     c = (k - 1) % columns; r = (k - 1) / columns
     set lmargin at screen (c * side + 10) / total
     set rmargin at screen ((c + 1) * side - 10) / total
-    set tmargin at screen 1 - (r + 34.0 / (side + 30)) / rows
-    set bmargin at screen 1 - (r + 1 - 8.0 / (side + 30)) / rows
+    set tmargin at screen 1 - (r * (side + 30) + 34) / height
+    set bmargin at screen 1 - ((r + 1) * (side + 30) - 8) / height
     set title title(k) offset 0, -0.5 textcolor rgb black
     set object 1 rectangle from 0, 0 to wide, deep fillcolor rgb "#1c1c22" behind
     plot sprintf("%s/grains-%d", tables, k) using 1:2:3:4 with circles linewidth 0.4 fillcolor rgb variable
@@ -44,4 +46,5 @@ if (opened) {
         plot NaN notitle
     }
 }
+if (foot) { width = total; unset title; set size noratio; eval legend }
 unset multiplot
