@@ -142,6 +142,25 @@ static void append_row(json_t *report, double box, double solid, double empty,
     append(report, "stress_tensor", tensor(is->pull, 1 / (box * copies)));
 }
 
+// Between a grain and one that lies inside it there is no surface to hold a ring. Of
+// copies, the grain of PACKING, which stand one behind the other.
+static void refuse_inner_grains(const struct packing *packing,
+                                const struct packing *wide,
+                                const struct ring_sites *sites, const char *name)
+{
+    const int n = packing->n_particle;
+    for (int k = 0; k < sites->count; k++) {
+        const int32_t *grain = sites->grain[k];
+        const double a = wide->radius[grain[0]], b = wide->radius[grain[1]];
+        if (sites->separation[k] > -2 * fmin(a, b)) continue;
+        const int inner = grain[a < b ? 0 : 1] % n, outer = grain[a < b ? 1 : 0] % n;
+        die(STATUS_BAD_DATA,
+            "%s: /particles: grain %d lies inside grain %d, so that no ring is between "
+            "them: leave one of the two out (`check` finds overlaps)",
+            name, inner, outer);
+    }
+}
+
 static json_t *report_of(const struct packing *packing, const struct liquid *liquid,
                          const struct rings_parameters *given, const char *name)
 {
@@ -155,6 +174,7 @@ static json_t *report_of(const struct packing *packing, const struct liquid *liq
                  solid = volume_of_grains(&wide, &within) / copies,
                  empty = box - within / copies;
     struct ring_sites sites = sites_of(&wide, suction[0], liquid->tension);
+    refuse_inner_grains(packing, &wide, &sites, name);
     json_t *report = json_pack(
         "{s:s,s:i,s:f,s:f,s:f,s:i,s:[],s:[],s:[],s:[],s:[],s:[],s:[],s:[]}", "schema",
         "craquelure/rings/1", "grains", packing->n_particle, "mean_radius", radius,

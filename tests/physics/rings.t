@@ -175,6 +175,15 @@ for settings, line in [(["suctions=[2e5,1e5]"], "rings.suctions: must be above 0
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings[0]} is refused",
        refused.stderr)
 
+# A grain inside another is a mistake in the data, not a ring that was not found.
+for radius, is_inside in (0.3 * R, True), (R, True), (1.1 * R, False):
+    place = 3 * R if is_inside else 4 * R
+    np.savetxt(at("inner.txt"), [[R, R, R, R], [3 * R, R, R, R], [place, R, R, radius]], fmt="%.17g")
+    run("pack", "-q", *sets("method=import", "bonds=none", "check=none"), at("inner.txt"), "-o", at("inner"))
+    ended = subprocess.run([f"{BIN}/rings", "-q", at("inner"), "-o", at("none")], capture_output=True, text=True, check=False)
+    ok(ended.returncode == (65 if is_inside else 0) and (not is_inside or "lies inside grain" in ended.stderr and ended.stderr.count("\n") == 1),
+       f"a grain of {radius / R:g} R {'inside another is refused' if is_inside else 'beside another is not'}", (ended.returncode, ended.stderr))
+
 # Grains of an extra layer are not there: stages that take all for solid say so.
 run("pack", "-q", *sets("counts=[3,3,3]", f"radius={R}", "extra_layer=true"), "-o", at("layered"))
 for stage in "rings", "flow":
