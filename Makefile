@@ -339,6 +339,10 @@ sanitize: ## the tests in C and a small run under address and undefined-behaviou
 	@jq '.pack.counts = [3, 3, 4]' samples/stiff-5x5x10.json \
 		| jq '.["force-protocol"].steps = 20 | .["dem-replay"].cycles = 50' >$(small_scene)
 	@+$(MAKE) --no-print-directory $(sanitized) SCENE=$(small_scene) run
+	@at=$(BUILD)/sanitize; for call in pack tessellate:packing merge-nodes:tessellation dry:network \
+		force-protocol:drying dem-replay:forces; do IFS=: read -r stage input <<<$$call; \
+		env $(sanitized) $$at/bin/$$stage -p $(small_scene) --estimate \
+			$${input:+$$at/runs/small/$$input.h5} >/dev/null || exit; done
 .PHONY: check-slurm
 check-slurm: all ## a study as Slurm's jobs on two nodes of its own, killed and gone on with (five minutes)
 	@apt-get install -y -q slurmctld slurmd slurm-client munge bc time >/dev/null

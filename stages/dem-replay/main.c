@@ -342,8 +342,8 @@ static void choose_bridges(struct replay_parameters *parameters,
 
 // Only the number of grains and whether there are bonds decide on the engine; the input
 // of a body that only shrinks or drains has no loads.
-static int estimate(const struct invocation *invocation,
-                    struct replay_parameters *parameters)
+// Frees INVOCATION.
+static int estimate(struct invocation *invocation, struct replay_parameters *parameters)
 {
     struct replay_settings *settings = &parameters->settings;
     struct body_size body = input_size(invocation, 0);
@@ -369,6 +369,7 @@ static int estimate(const struct invocation *invocation,
             : cost_of_cycles(&body, ramp, cycles,
                              isnan(settings->tolerance) ? cycles : most);
     print_estimate(&cost, &body);
+    invocation_free(invocation);
     return STATUS_OK;
 }
 

@@ -222,7 +222,8 @@ static double expected_layers(const struct invocation *invocation,
     return fmax(1, layers);
 }
 
-static int estimate(const struct invocation *invocation,
+// Frees INVOCATION: there is nothing else to do.
+static int estimate(struct invocation *invocation,
                     const struct dry_parameters *parameters)
 {
     const struct drying_conditions *conditions = &parameters->conditions;
@@ -237,6 +238,7 @@ static int estimate(const struct invocation *invocation,
         cost = with_rings(cost, &body, parameters->rings == RINGS_FILMS,
                           film_step(parameters, body.throats));
     print_estimate(&cost, &body);
+    invocation_free(invocation);
     return STATUS_OK;
 }
 

@@ -368,12 +368,14 @@ static void write(const struct computation *computation,
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
-static int estimate(const struct invocation *invocation,
+// Frees INVOCATION: there is nothing else to do.
+static int estimate(struct invocation *invocation,
                     const struct flow_parameters *parameters)
 {
     const struct body_size body = input_size(invocation, 0);
     const struct cost cost = cost_of_flow(body.grains, parameters->tensor ? 4 : 1);
     print_estimate(&cost, &body);
+    invocation_free(invocation);
     return STATUS_OK;
 }
 

@@ -459,7 +459,8 @@ static void write_forces(const struct process *process, const double *time, int 
 
 // Times by largest_change are found only from the drying: as many as uniform ones are
 // expected.
-static int estimate(const struct invocation *invocation,
+// Frees INVOCATION.
+static int estimate(struct invocation *invocation,
                     const struct force_parameters *parameters)
 {
     struct body_size body = input_size(invocation, 0);
@@ -467,6 +468,7 @@ static int estimate(const struct invocation *invocation,
     body.loads = (double)parameters->steps;
     const struct cost cost = cost_of_forces(&body);
     print_estimate(&cost, &body);
+    invocation_free(invocation);
     return STATUS_OK;
 }
 

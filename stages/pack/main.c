@@ -287,7 +287,7 @@ static bool is_degenerate(enum method method)
 }
 
 // GRAINS: as many as were read or said; 0: as the parameters will make.
-static int estimate(const struct pack_parameters *parameters, double grains)
+static void estimate(const struct pack_parameters *parameters, double grains)
 {
     struct reason reason;
     enum status status = STATUS_OK;
@@ -297,7 +297,6 @@ static int estimate(const struct pack_parameters *parameters, double grains)
     if (is_degenerate(parameters->method)) body = body_with_throats(body, 3.5 * grains);
     const struct cost cost = cost_of_packing(grains, moving_of(parameters->method));
     print_estimate(&cost, &body);
-    return STATUS_OK;
 }
 
 int main(int argc, char **argv)
@@ -310,9 +309,14 @@ int main(int argc, char **argv)
     const char *given = given_input(&invocation, parameters.method);
     if (given && !(invocation.grains > 0))
         packing = make_import(&invocation, &parameters, inputs, &domain);
-    if (invocation.estimates)
-        return estimate(&parameters,
-                        invocation.grains > 0 ? invocation.grains : packing.n_particle);
+    if (invocation.estimates) {
+        estimate(&parameters,
+                 invocation.grains > 0 ? invocation.grains : packing.n_particle);
+        json_decref(inputs);
+        packing_free(&packing);
+        invocation_free(&invocation);
+        return STATUS_OK;
+    }
 
     struct checkpoint checkpoint;
     begin_checkpoint(&checkpoint, &invocation, inputs, parameters.method);
