@@ -381,6 +381,12 @@ is 'a layer of no scene' 'nowhere.json: no such file' "$(make -n craquelure SCEN
 touch grains.txt
 is 'several seeds of grains that do not change' 'CRAQUELURE_SEEDS: one only' \
     "$(make -n craquelure SCENE=samples/stiff-5x5x10.json IMPORT=grains.txt CRAQUELURE_SEEDS='1 2' 2>&1 | grep -o 'CRAQ[^,]*')"
+jq '.pack.method = "explosive_repulsion"' $scene >samples/apart.json
+several=(IMPORT=grains.txt CRAQUELURE_SEEDS='1 2')
+is 'several seeds of grains that these move apart' 'seed=1 seed=2' \
+    "$(make -n craquelure SCENE=samples/apart.json "${several[@]}" | grep -o "set .seed=[12]" | grep -o 'seed=.' | sort -u | names)"
+is 'as SET has it' "2 0" "$(make -n craquelure SCENE=samples/apart.json SET=pack.method=import "${several[@]}" >said 2>&1; echo $?) $(
+    make -n craquelure SCENE=samples/x.json SET=pack.method=explosive_repulsion "${several[@]}" >said 2>&1; echo $?)"
 
 # Both make a folder of the scene's name.
 cp $scene samples/layer.json

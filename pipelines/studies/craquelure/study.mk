@@ -17,9 +17,15 @@ craquelure: ## a layer that cracks into polygons as it shrinks (a minute of one 
 ifneq ($(call asked,craquelure,$(craquelure)),)
 $(if $(wildcard $(craquelure_scene)),,$(error $(craquelure_scene): no such file))
 craquelure_seeds := $(or $(call once_each,$(CRAQUELURE_SEEDS)),$(shell jq -r '.pack.seed // 1 | floor' $(craquelure_scene)))
-$(if $(and $(IMPORT),$(word 2,$(craquelure_seeds))),$(error CRAQUELURE_SEEDS: one only, since grains of a file are the same for each))
 # What SET sets of stage $1.
 craquelure_set = $(patsubst $1.%,%,$(filter $1.%,$(SET)))
+# Only explosive_repulsion moves grains of a file by its seed.
+ifneq ($(and $(IMPORT),$(word 2,$(craquelure_seeds))),)
+craquelure_method := $(lastword $(shell jq -r '.pack.method // "cubic"' $(craquelure_scene)) $(patsubst method=%,%,$(filter \
+	method=%,$(call craquelure_set,pack))))
+$(if $(filter explosive_repulsion,$(craquelure_method)),,$(error CRAQUELURE_SEEDS: one only, since grains of a file are the same \
+	for each (but by pack.method=explosive_repulsion)))
+endif
 $(if $(filter-out pack.% dem-replay.% crackstats.%,$(SET)),$(error SET: must be pack.KEY, dem-replay.KEY or crackstats.KEY))
 # The layer of seed $1, in a folder of its own.
 define craquelure_layer
