@@ -4,6 +4,7 @@
 and in a headless Chromium, what it draws is what a search of the artifacts finds at the same point
 and moment, the slider, keys, pick, cut and fallback work, and nothing leaves the page."""
 import base64
+import glob
 import html.parser
 import json
 import os
@@ -57,6 +58,9 @@ os.makedirs(at("elsewhere"))
 for name in NAMES:
     shutil.copy(at(name), at("elsewhere"))
 ok(run("report", at("elsewhere")) == page, "wherever they lie")
+policy_of = lambda of: re.search(r"script-src ('[^']*'); style-src ('[^']*')", of).groups()
+stale = [path for path in glob.glob("docs/pages/*.html") if policy_of(read(path).decode()) != policy_of(text)]
+ok(not stale, "the pages of the docs have its scripts and style (docs/gallery.md has the commands)", stale)
 ok(len(page) < 150e3, "a small run is a small page", len(page))
 with h5py.File(at("packing.h5")) as file, h5py.File(at("forces.h5")) as forces:
     radii, suction = file["particles/radius"][:], forces["summary"].attrs["capillary_pressure"]
