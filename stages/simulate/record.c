@@ -300,8 +300,9 @@ static void stream_column(struct recorded_column *c, struct checkpoint_stream *s
         stream_long(stream, &c->rows);
         return;
     }
+    stream_count(stream, &c->rows);
     c->data =
-        stream_room(stream, c->data, &c->rows, (size_t)c->width * number_size(c->type));
+        stream_room(stream, c->data, c->rows, (size_t)c->width * number_size(c->type));
     c->capacity = stream->restoring ? c->rows : c->capacity;
     const int64_t count = c->rows * c->width;
     if (c->type == ARRAY_FLOAT64) stream_numbers(stream, c->data, count);

@@ -160,10 +160,9 @@ def make_network(folder, name, count):
     return path
 
 
-def make_irregular(folder, name, count, upper):
-    """Random grains that do not touch: each has other throats, so that gas comes to them at other times."""
-    made = run("pack", "--quiet", "--set", "method=random_sequential", "--set", f"count={count}", "--set",
-               f"upper={upper}")
+def make_irregular(folder, name, count, upper, method="random_sequential"):
+    """Random grains: each has other throats, so that gas comes to them at other times."""
+    made = run("pack", "--quiet", "--set", f"method={method}", "--set", f"count={count}", "--set", f"upper={upper}")
     for stage in ["tessellate", "merge-nodes"]:
         made = run(stage, input=made)
     path = os.path.join(folder, name)
@@ -266,6 +265,10 @@ with scratch() as folder:
     irregular = make_irregular(folder, "irregular", 4000, "[14e-6,14e-6,16e-6]")
     for liquid in "inviscid", "immobile":
         in_pieces(f"dry, {liquid} liquid, irregular body", [*dry, "--set", f"liquid={liquid}", irregular])
+    in_pieces("dry with a tolerance", [*dry, "--set", "vapour_tolerance=1e-6", irregular])
+    beads = make_irregular(folder, "beads", 1500, "[11e-6,11e-6,11e-6]", "soft_spheres")
+    for rings, liquid in ("isolated", "inviscid"), ("isolated", "immobile"), ("joined", "inviscid"):
+        in_pieces(f"dry, {rings} rings, {liquid} liquid", [*dry, "--set", f"rings={rings}", "--set", f"liquid={liquid}", beads])
 
     without_a_place("dry", [*dry, "--set", "liquid=viscous", small])
 

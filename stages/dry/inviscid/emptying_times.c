@@ -380,18 +380,18 @@ void emptying_times_empty_ended(struct emptying_times *times)
 void emptying_times_state(struct emptying_times *times,
                           struct checkpoint_stream *stream)
 {
-    const int n_throat = times->occupancy->network->n_throat;
+    const int n_place = times->n_place;
     for (int k = 0; stream->restoring && k < times->n; k++)
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = -1;
-    stream_integer(stream, &times->n, 0, n_throat);
-    stream_integer(stream, &times->n_unused, 0, n_throat);
-    stream_integer(stream, &times->n_losing, 0, n_throat);
+    stream_integer(stream, &times->n, 0, n_place);
+    stream_integer(stream, &times->n_unused, 0, n_place);
+    stream_integer(stream, &times->n_losing, 0, n_place);
     evaporation_shares_state(times, stream);
-    stream_integers(stream, times->owner, times->n, -1, n_throat - 1);
-    stream_integers(stream, times->throat, times->n, -1, n_throat - 1);
+    stream_integers(stream, times->owner, times->n, -1, n_place - 1);
+    stream_integers(stream, times->throat, times->n, -1, n_place - 1);
     stream_integers(stream, times->shares, times->n, 0, times->n_share);
     stream_integers(stream, times->unused, times->n_unused, 0, times->n - 1);
-    stream_integers(stream, times->losing, times->n_losing, 0, n_throat - 1);
+    stream_integers(stream, times->losing, times->n_losing, 0, n_place - 1);
     stream_flags(stream, times->has_sum, times->n);
     stream_sums(stream, times->sum, times->n);
     stream_numbers(stream, times->summed, times->n);
@@ -400,7 +400,7 @@ void emptying_times_state(struct emptying_times *times,
     stream_numbers(stream, times->left_lost, times->n);
     stream_numbers(stream, times->since, times->n);
     stream_numbers(stream, &times->now, 1);
-    stream_numbers(stream, times->saturation, n_throat);
+    stream_numbers(stream, times->saturation, n_place);
     for (int k = 0; stream->restoring && k < times->n; k++) {
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = k;
         const int throat = times->throat[k];

@@ -341,7 +341,8 @@ static void heap_state(struct rank_heap *heap, int n_throat,
                        struct checkpoint_stream *stream)
 {
     int64_t n = heap->n;
-    heap->rank = stream_room(stream, heap->rank, &n, sizeof *heap->rank);
+    stream_count(stream, &n);
+    heap->rank = stream_room(stream, heap->rank, n, sizeof *heap->rank);
     if (stream->restoring) heap->n = heap->capacity = (int)n;
     stream_integers(stream, heap->rank, heap->n, 0, n_throat - 1);
 }
@@ -354,8 +355,9 @@ static void identities_state(struct clusters *clusters,
     if (stream->restoring)
         for (int c = 0; c < clusters->n_id; c++)
             free(clusters->heap[c].rank);
-    clusters->size = stream_room(stream, clusters->size, &n, sizeof *clusters->size);
-    clusters->heap = stream_room(stream, clusters->heap, &n, sizeof *clusters->heap);
+    stream_count(stream, &n);
+    clusters->size = stream_room(stream, clusters->size, n, sizeof *clusters->size);
+    clusters->heap = stream_room(stream, clusters->heap, n, sizeof *clusters->heap);
     if (stream->restoring) {
         memset(clusters->heap, 0, (size_t)n * sizeof *clusters->heap);
         clusters->n_id = clusters->capacity = (int)n;
@@ -365,7 +367,8 @@ static void identities_state(struct clusters *clusters,
     for (int c = 0; c < clusters->n_id; c++)
         heap_state(&clusters->heap[c], n_throat, stream);
     n = clusters->n_unused;
-    clusters->unused = stream_room(stream, clusters->unused, &n, sizeof(int));
+    stream_count(stream, &n);
+    clusters->unused = stream_room(stream, clusters->unused, n, sizeof(int));
     if (stream->restoring) clusters->n_unused = clusters->unused_capacity = (int)n;
     stream_integers(stream, clusters->unused, n, 0, clusters->n_id - 1);
 }

@@ -211,9 +211,11 @@ void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stre
     stream_sums(stream, occupancy->liquid, n_throat);
     stream_sums(stream, &occupancy->total_liquid, 1);
     stream_numbers(stream, &occupancy->initial_liquid, 1);
-    stream_integer(stream, &occupancy->n_liquid, 0, n_throat);
+    stream_integer(stream, &occupancy->n_liquid, 0,
+                   n_throat + (occupancy->has_rings ? n_node : 0));
     stream_flags(stream, occupancy->gas, n_node);
     stream_integers(stream, occupancy->liquid_beside, n_node, 0, n_throat);
+    if (occupancy->has_rings) stream_flags(stream, occupancy->has_rings, n_node);
     stream_integer(stream, &occupancy->n_wet, 0, n_node);
     stream_integers(stream, occupancy->wet, occupancy->n_wet, 0, n_node - 1);
     stream_integers(stream, occupancy->wet_place, n_node, -1, occupancy->n_wet - 1);

@@ -44,7 +44,8 @@ static bool identities_fit(const struct clusters *clusters)
 
 // A cluster is one connected component of the liquid, and all of it. Throats at a node
 // that joins must be of one cluster; so no component has two clusters. Components are
-// as many as clusters in use; so no cluster has two components.
+// as many as clusters in use; so no cluster has two components, unless films join what
+// gas has parted.
 static bool pieces_fit(const struct clusters *clusters)
 {
     const struct incidence *incidence = clusters->incidence;
@@ -69,7 +70,8 @@ static bool pieces_fit(const struct clusters *clusters)
     for (int t = 0; t < n_throat; t++)
         pieces += clusters->of_throat[t] >= 0 && parent[t] == t;
     free(parent);
-    return fits && pieces == clusters->count;
+    return fits && (clusters->never_part ? pieces >= clusters->count
+                                         : pieces == clusters->count);
 }
 
 // A heap holds no throat twice, and all menisci of its cluster, of which there are
@@ -109,7 +111,21 @@ static bool menisci_fit(const struct clusters *clusters)
 
 // ---- occupancy ---------------------------------------------------------------------
 
-// The counts of throats with liquid are right, in all and at each node.
+static bool has_rings(const struct occupancy *occupancy, int node)
+{
+    return occupancy->has_rings && occupancy->has_rings[node];
+}
+
+// Whether there is liquid in a throat, or in the rings of a node.
+static bool is_liquid(const struct occupancy *occupancy, int place)
+{
+    const int n_throat = occupancy->network->n_throat;
+    return place < n_throat ? occupancy->clusters.of_throat[place] >= 0
+                            : has_rings(occupancy, place - n_throat);
+}
+
+// The counts of throats with liquid are right, in all and at each node; in all, nodes
+// with rings count too.
 static bool liquid_fits(const struct occupancy *occupancy)
 {
     const struct network *network = occupancy->network;
@@ -124,11 +140,13 @@ static bool liquid_fits(const struct occupancy *occupancy)
     }
     for (int i = 0; i < network->n_node; i++)
         fits &= beside[i] == occupancy->liquid_beside[i];
+    for (int i = 0; i < network->n_node; i++)
+        n_liquid += has_rings(occupancy, i);
     free(beside);
     return fits && n_liquid == occupancy->n_liquid;
 }
 
-// Wet nodes are listed once each, have liquid, and menisci in its throats.
+// Wet nodes are listed once each, have liquid or rings, and menisci in its throats.
 static bool wet_nodes_fit(const struct occupancy *occupancy)
 {
     const struct clusters *clusters = &occupancy->clusters;
@@ -138,7 +156,8 @@ static bool wet_nodes_fit(const struct occupancy *occupancy)
         placed += occupancy->wet_place[i] >= 0;
     for (int w = 0; w < occupancy->n_wet; w++) {
         const int node = occupancy->wet[w];
-        if (occupancy->wet_place[node] != w || occupancy->liquid_beside[node] == 0)
+        if (occupancy->wet_place[node] != w ||
+            (occupancy->liquid_beside[node] == 0 && !has_rings(occupancy, node)))
             return false;
         for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
             if (clusters->of_throat[incidence->throat[k]] >= 0 &&
@@ -150,8 +169,8 @@ static bool wet_nodes_fit(const struct occupancy *occupancy)
 
 // ---- timers ------------------------------------------------------------------------
 
-// A timer belongs to a reservoir that has no other, and to a throat of it with liquid;
-// or it is listed once as unused.
+// A timer belongs to a reservoir that has no other, and to a throat or rings of it with
+// liquid; or it is listed once as unused.
 static bool owners_fit(const struct emptying_times *times)
 {
     const struct occupancy *occupancy = times->occupancy;
@@ -165,8 +184,7 @@ static bool owners_fit(const struct emptying_times *times)
         }
         running++;
         if (times->timer[owner] != k || throat < 0 || times->shares[k] == 0 ||
-            occupancy->clusters.of_throat[throat] < 0 ||
-            reservoir_of(times, throat) != owner)
+            !is_liquid(occupancy, throat) || reservoir_of(times, throat) != owner)
             return false;
     }
     bool *seen = NEW_ARRAY(bool, times->n);
@@ -193,6 +211,19 @@ static bool losing_fit(const struct emptying_times *times)
     return true;
 }
 
+// Whether TIMER supplies a share of NODE: as the reservoir of THROAT, a throat there;
+// or, where none there holds liquid, as its rings or as what feeds these.
+static bool may_share(const struct emptying_times *times, int timer, int node,
+                      int throat)
+{
+    const struct occupancy *occupancy = times->occupancy;
+    const int owner = times->owner[timer];
+    if (occupancy->liquid_beside[node] > 0 || !has_rings(occupancy, node))
+        return owner == reservoir_of(times, throat);
+    return owner == occupancy->network->n_throat + node ||
+           (occupancy->feeder && owner == occupancy->feeder[node]);
+}
+
 // Each share and its place at a node point at each other, and timers count them. A
 // place is one throat at one node, a row of the incidence.
 static bool shares_fit(const struct emptying_times *times)
@@ -207,10 +238,9 @@ static bool shares_fit(const struct emptying_times *times)
         const int at = times->share_incidence[k];
         const int node = times->occupancy->vapour.mesh.air_site[share->air_place];
         count[share->timer]++;
-        fits &=
-            times->share_place[at] == k && share->part >= 0 &&
-            at >= incidence->offset[node] && at < incidence->offset[node + 1] &&
-            reservoir_of(times, incidence->throat[at]) == times->owner[share->timer];
+        fits &= times->share_place[at] == k && share->part >= 0 &&
+                at >= incidence->offset[node] && at < incidence->offset[node + 1] &&
+                may_share(times, share->timer, node, incidence->throat[at]);
     }
     for (int k = 0; k < times->n; k++)
         fits &= count[k] == times->shares[k];
@@ -254,19 +284,18 @@ static bool history_fits(const struct recorder *recorder)
 
 // ---- the run -----------------------------------------------------------------------
 
-// Throats that have ended since the last step are listed once each. FLAGGED: is_ended
-// marks exactly these; else they must be empty.
+// Throats and rings that have ended since the last step are listed once each. FLAGGED:
+// is_ended marks exactly these; else they must be empty.
 static bool ended_fit(const struct run *run, bool flagged)
 {
-    const int n_throat = run->occupancy.network->n_throat;
-    bool *seen = NEW_ARRAY(bool, n_throat), fits = true;
+    const int n = places_of(run);
+    bool *seen = NEW_ARRAY(bool, n), fits = true;
     for (int k = 0; k < run->n_ended; k++) {
-        const int throat = run->ended[k];
-        fits &=
-            !seen[throat] && (flagged || run->occupancy.clusters.of_throat[throat] < 0);
-        seen[throat] = true;
+        const int place = run->ended[k];
+        fits &= !seen[place] && (flagged || !is_liquid(&run->occupancy, place));
+        seen[place] = true;
     }
-    for (int t = 0; t < n_throat && flagged; t++)
+    for (int t = 0; t < n && flagged; t++)
         fits &= seen[t] == run->is_ended[t];
     free(seen);
     return fits;

@@ -118,7 +118,7 @@ static void prepare(struct run *run)
 {
     const struct network *network = run->occupancy.network;
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
-    const bool has_kelvin = run->conditions->kelvin, has_rings = run->conditions->rings;
+    const bool has_kelvin = run->conditions->kelvin;
     if (is_viscous)
         run->flow =
             liquid_flow_init(&run->occupancy, run->scale.length,
@@ -131,7 +131,7 @@ static void prepare(struct run *run)
     else
         run->times = emptying_times_init(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
-    const int n = network->n_throat + (has_rings ? network->n_node : 0);
+    const int n = places_of(run);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, n);
     run->is_ended = NEW_ARRAY(bool, n);
@@ -232,8 +232,7 @@ static void free_run(struct run *run)
     ring_stores_free(&run->rings);
 }
 
-// All checks before anything is made. A run with a tolerance cannot be kept: the state
-// of a front is that of doubles (dense_front_state).
+// All checks before anything is made.
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,
@@ -253,16 +252,10 @@ enum status dry_network(const struct network *network,
                       .recorder = recorder_init(history)};
     status = make_occupancy(network, &run, reason);
     const struct keeper *keeper = progress ? progress->keeper : NULL;
-    if (!status && conditions->vapour_tolerance > 0 && keeper &&
+    if (!status && conditions->rings == RINGS_FILMS && keeper &&
         (keeper->due || keeper->begin))
-        status =
-            refuse(reason, STATUS_BAD_DATA,
-                   "vapour_tolerance: must be 0 where a checkpoint is kept, is %g: "
-                   "with 0 the vapour is exact; or run without --checkpoint",
-                   conditions->vapour_tolerance);
-    if (!status && conditions->rings && keeper && (keeper->due || keeper->begin))
         status = refuse(reason, STATUS_BAD_DATA,
-                        "rings: must be none where a checkpoint is kept; or run "
+                        "rings: must not be films where a checkpoint is kept; or run "
                         "without --checkpoint");
     if (!status) status = begin_run(&run, keeper, reason);
     if (!status) status = dry_all(&run, progress, reason);

@@ -110,8 +110,7 @@ struct drying_progress {
 //
 // Cost of an event: the square of the wet nodes that see each other through the gas, at
 // most; the rest goes with those it changes, and with what is recorded. STATUS_BAD_DATA
-// also for a keeper where vapour_tolerance is above 0 or there are rings: such a state
-// cannot be kept.
+// also for a keeper with rings=films: such a state cannot be kept.
 enum status dry_network(const struct network *network,
                         const struct drying_conditions *conditions,
                         const struct drying_progress *progress,

@@ -89,26 +89,28 @@ static void events_state(struct recorder *recorder, int n_throat,
 {
     struct drying_history *history = recorder->history;
     int64_t n = history->n_event;
-    history->event_time = stream_room(stream, history->event_time, &n, sizeof(double));
-    history->event_throat = stream_room(stream, history->event_throat, &n, sizeof(int));
-    history->event_kind = stream_room(stream, history->event_kind, &n, 1);
+    stream_count(stream, &n);
+    history->event_time = stream_room(stream, history->event_time, n, sizeof(double));
+    history->event_throat = stream_room(stream, history->event_throat, n, sizeof(int));
+    history->event_kind = stream_room(stream, history->event_kind, n, 1);
     if (stream->restoring) history->n_event = recorder->event_capacity = (int)n;
     stream_numbers(stream, history->event_time, n);
     stream_integers(stream, history->event_throat, n, 0, n_throat - 1);
     stream_bytes(stream, history->event_kind, n, EVENT_REFILLED);
 }
 
-static void changes_state(struct recorder *recorder, int n_throat,
+static void changes_state(struct recorder *recorder, int n_place,
                           struct checkpoint_stream *stream)
 {
     struct drying_history *history = recorder->history;
     int64_t n = recorder->n_change;
+    stream_count(stream, &n);
     history->change_throat =
-        stream_room(stream, history->change_throat, &n, sizeof(int));
+        stream_room(stream, history->change_throat, n, sizeof(int));
     history->change_saturation =
-        stream_room(stream, history->change_saturation, &n, sizeof(double));
+        stream_room(stream, history->change_saturation, n, sizeof(double));
     if (stream->restoring) recorder->n_change = recorder->change_capacity = n;
-    stream_integers(stream, history->change_throat, n, 0, n_throat - 1);
+    stream_integers(stream, history->change_throat, n, 0, n_place - 1);
     stream_numbers(stream, history->change_saturation, n);
 }
 
@@ -119,12 +121,13 @@ static void steps_state(struct recorder *recorder, int n_throat,
 {
     struct drying_history *history = recorder->history;
     int64_t n = history->n_step;
-    history->time = stream_room(stream, history->time, &n, sizeof(double));
-    history->saturation = stream_room(stream, history->saturation, &n, sizeof(double));
-    history->rate = stream_room(stream, history->rate, &n, sizeof(double));
-    history->clusters = stream_room(stream, history->clusters, &n, sizeof(int32_t));
+    stream_count(stream, &n);
+    history->time = stream_room(stream, history->time, n, sizeof(double));
+    history->saturation = stream_room(stream, history->saturation, n, sizeof(double));
+    history->rate = stream_room(stream, history->rate, n, sizeof(double));
+    history->clusters = stream_room(stream, history->clusters, n, sizeof(int32_t));
     history->change_offset = // there is room for one more
-        stream_room(stream, history->change_offset, &n, sizeof(int64_t));
+        stream_room(stream, history->change_offset, n, sizeof(int64_t));
     if (stream->restoring) history->n_step = recorder->step_capacity = (int)n;
     stream_numbers(stream, history->time, n);
     stream_numbers(stream, history->saturation, n);
@@ -136,11 +139,11 @@ static void steps_state(struct recorder *recorder, int n_throat,
     }
 }
 
-void recorder_state(struct recorder *recorder, int n_throat,
+void recorder_state(struct recorder *recorder, int n_throat, int n_place,
                     struct checkpoint_stream *stream)
 {
     events_state(recorder, n_throat, stream);
-    changes_state(recorder, n_throat, stream);
+    changes_state(recorder, n_place, stream);
     steps_state(recorder, n_throat, stream);
     stream_numbers(stream, &recorder->history->breakthrough_saturation, 1);
     stream_numbers(stream, &recorder->history->first_period_end_saturation, 1);

@@ -35,9 +35,10 @@ void recorder_add_step(struct recorder *recorder, double time, double saturation
 // Sets the rate of the step added last.
 void recorder_set_last_rate(struct recorder *recorder, double rate);
 
-// Writes the history to STREAM, or restores it, for a network of N_THROAT throats. All
-// but its pressures: resume.c keeps these.
-void recorder_state(struct recorder *recorder, int n_throat,
+// Writes the history to STREAM, or restores it, for a network of N_THROAT throats, with
+// changes at N_PLACE places, throats and the rings of nodes. All but its pressures:
+// resume.c keeps these.
+void recorder_state(struct recorder *recorder, int n_throat, int n_place,
                     struct checkpoint_stream *stream);
 
 #endif

@@ -48,16 +48,16 @@ static void flow_state(struct run *run, struct checkpoint_stream *stream)
 
 static void steps_state(struct run *run, struct checkpoint_stream *stream)
 {
-    const int n_throat = run->occupancy.network->n_throat;
+    const int n = places_of(run);
     stream_numbers(stream, &run->step_saturation, 1);
     stream_sums(stream, &run->step_time, 1);
     stream_sums(stream, &run->step_evaporated, 1);
     stream_integer(stream, &run->n_skipped, 0, INT_MAX);
-    stream_integer(stream, &run->n_ended, 0, n_throat);
-    stream_integers(stream, run->ended, run->n_ended, 0, n_throat - 1);
-    stream_flags(stream, run->is_ended, n_throat);
+    stream_integer(stream, &run->n_ended, 0, n);
+    stream_integers(stream, run->ended, run->n_ended, 0, n - 1);
+    stream_flags(stream, run->is_ended, n);
     stream_integer(stream, &run->n_idle, 0, INT_MAX);
-    stream_numbers(stream, run->saturation, n_throat);
+    stream_numbers(stream, run->saturation, n);
 }
 
 // Kelvin effect: the losses of the next step have been found before the state is kept.
@@ -77,9 +77,10 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
     stream_sums(stream, &run->evaporated, 1);
     stream_numbers(stream, &run->imbalance, 1);
     stream_numbers(stream, &run->first_rate, 1);
-    stream_integer(stream, &run->n_at_start, 0, run->occupancy.network->n_throat);
+    stream_integer(stream, &run->n_at_start, 0, places_of(run));
     stream_long(stream, &run->n_flow_step);
-    recorder_state(&run->recorder, run->occupancy.network->n_throat, stream);
+    recorder_state(&run->recorder, run->occupancy.network->n_throat, places_of(run),
+                   stream);
     occupancy_state(&run->occupancy, stream);
     steps_state(run, stream);
     const int n_throat = run->occupancy.network->n_throat;

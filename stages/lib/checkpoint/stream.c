@@ -123,17 +123,21 @@ void stream_long(struct checkpoint_stream *stream, int64_t *at)
     *at = stream->failed ? 0 : (int64_t)value;
 }
 
-void *stream_room(struct checkpoint_stream *stream, void *array, int64_t *n,
-                  size_t size)
+void stream_count(struct checkpoint_stream *stream, int64_t *n)
 {
     stream_long(stream, n);
-    if (!stream->restoring) return array;
+    if (!stream->restoring) return;
     // No more than there can be in a values, so that a wrong count asks for no memory.
     const int64_t most =
         stream->number.capacity + stream->integer.capacity + stream->byte.capacity;
     stream->failed |= *n > most || *n > INT_MAX;
     if (stream->failed) *n = 0;
-    return reallocate(array, (size_t)*n + 1, size);
+}
+
+void *stream_room(const struct checkpoint_stream *stream, void *array, int64_t n,
+                  size_t size)
+{
+    return stream->restoring ? reallocate(array, (size_t)n + 1, size) : array;
 }
 
 // --- all of it ---------------------------------------------------------------------

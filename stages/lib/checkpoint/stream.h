@@ -8,7 +8,8 @@
 //     void parts_state(struct parts *parts, struct checkpoint_stream *stream)
 //     {
 //         int64_t n = parts->n;
-//         parts->at = stream_room(stream, parts->at, &n, sizeof *parts->at);
+//         stream_count(stream, &n);
+//         parts->at = stream_room(stream, parts->at, n, sizeof *parts->at);
 //         parts->n = (int)n;
 //         stream_numbers(stream, parts->at, n);
 //         stream_integers(stream, parts->owner, n_owner, -1, parts->n - 1);
@@ -62,11 +63,12 @@ void stream_flags(struct checkpoint_stream *stream, bool *at, int64_t n);
 void stream_integer(struct checkpoint_stream *stream, int *at, int least, int most);
 void stream_long(struct checkpoint_stream *stream, int64_t *at); // 0 to 2^53
 
-// ARRAY, with N elements of SIZE bytes, is written next: makes room for as many as are
-// read (up to 2^31), and says how many in N. Returns ARRAY, moved or not; a count
-// beyond what the stream holds fails, and asks for no memory. Keeping: ARRAY is
-// returned as it is.
-void *stream_room(struct checkpoint_stream *stream, void *array, int64_t *n,
+// How many elements arrays that are written next have. Once for all arrays of one
+// length: two counts may differ. A count beyond 2^31, or what the stream holds, fails.
+void stream_count(struct checkpoint_stream *stream, int64_t *n);
+// Room for N elements of SIZE bytes while restoring, and one more. Returns ARRAY, moved
+// or not; keeping: as it is.
+void *stream_room(const struct checkpoint_stream *stream, void *array, int64_t n,
                   size_t size);
 
 // All is written: the lists for a keeper, which frees them. Copies: STREAM is freed by

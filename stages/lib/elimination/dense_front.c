@@ -313,24 +313,62 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
     }
 }
 
-void dense_front_state(struct dense_front *dense, int n,
+// --- state -------------------------------------------------------------------------
+
+// Floats go through doubles, which hold them exactly.
+static void row_state(struct dense_front *dense, int i, double *row,
+                      struct checkpoint_stream *stream)
+{
+    if (!dense->is_rounded) {
+        stream_numbers(stream, row_of(dense, i), i);
+        return;
+    }
+    for (int j = 0; j < i && !stream->restoring; j++)
+        row[j] = dense_front_entry(dense, i, j);
+    stream_numbers(stream, row, i);
+    for (int j = 0; j < i && stream->restoring; j++)
+        dense_front_set(dense, i, j, row[j]);
+}
+
+static void pending_state(struct dense_front *dense, int n, double *row,
+                          struct checkpoint_stream *stream)
+{
+    const int64_t in_block = (int64_t)room_pending(dense) * columns_in_block(dense);
+    const int64_t count = blocks_of(dense, n) * in_block;
+    if (!dense->is_rounded) {
+        stream_numbers(stream, dense->pending, count);
+        return;
+    }
+    for (int64_t at = 0, size; at < count; at += size) {
+        size = count - at < n ? count - at : n;
+        for (int64_t k = 0; k < size && !stream->restoring; k++)
+            row[k] = pending_entry(dense, (size_t)(at + k));
+        stream_numbers(stream, row, size);
+        for (int64_t k = 0; k < size && stream->restoring; k++)
+            set_pending(dense, (size_t)(at + k), row[k]);
+    }
+}
+
+void dense_front_state(struct dense_front *dense, int n, bool is_rounded,
                        struct checkpoint_stream *stream)
 {
     int n_pending = dense->n_pending;
     stream_flags(stream, &dense->is_large, 1);
+    dense->is_rounded = dense->is_large && is_rounded;
     stream_integer(stream, &n_pending, 0, room_pending(dense) - 1);
+    double *row = NEW_ARRAY(double, n);
     for (int i = 0; i < n; i++) {
         if (stream->restoring) dense_front_add_row(dense, i);
-        stream_numbers(stream, row_of(dense, i), i);
+        row_state(dense, i, row, stream);
     }
     stream->failed |= n_pending > 0 && !dense->is_large;
-    if (n_pending == 0 || stream->failed) return;
-    if (stream->restoring) reserve_pending(dense, n);
-    dense->n_pending = n_pending;
-    stream_numbers(stream, dense->factor, n_pending);
-    stream_numbers(stream, dense->pending,
-                   (int64_t)blocks_of(dense, n) * room_pending(dense) *
-                       columns_in_block(dense));
+    if (n_pending > 0 && !stream->failed) {
+        if (stream->restoring) reserve_pending(dense, n);
+        dense->n_pending = n_pending;
+        stream_numbers(stream, dense->factor, n_pending);
+        pending_state(dense, n, row, stream);
+    }
+    free(row);
 }
 
 void dense_front_free(struct dense_front *dense)

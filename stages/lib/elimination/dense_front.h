@@ -117,9 +117,10 @@ void dense_front_add_products(struct dense_front *dense, int n, double factor,
 // Adds all pending updates to the entries.
 void dense_front_flush(struct dense_front *dense, int n);
 
-// Keeps or restores N rows of doubles, entries and pending updates as they are. Pending
-// ones are not flushed for it, as that would change the rounding of what follows.
-void dense_front_state(struct dense_front *dense, int n,
+// Keeps or restores N rows, entries and pending updates as they are; large ones are
+// floats if it IS ROUNDED. Pending ones are not flushed for it, as that would change
+// the rounding of what follows.
+void dense_front_state(struct dense_front *dense, int n, bool is_rounded,
                        struct checkpoint_stream *stream);
 
 // What it owns; it is empty then.

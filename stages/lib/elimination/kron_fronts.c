@@ -266,17 +266,17 @@ void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
 
 // --- state -------------------------------------------------------------------------
 
-static void front_state(struct front *front, int n_site, int n_front,
+static void front_state(const struct kron_fronts *fronts, struct front *front,
                         struct checkpoint_stream *stream)
 {
-    stream_integer(stream, &front->n, 0, n_site);
-    stream_integer(stream, &front->next_unused, -1, n_front - 1);
+    stream_integer(stream, &front->n, 0, fronts->n_site);
+    stream_integer(stream, &front->next_unused, -1, fronts->n_front - 1);
     if (stream->restoring) {
         front->capacity = front->n;
         front->site = NEW_ARRAY(int, front->n);
     }
-    stream_integers(stream, front->site, front->n, 0, n_site - 1);
-    dense_front_state(&front->dense, front->n, stream);
+    stream_integers(stream, front->site, front->n, 0, fronts->n_site - 1);
+    dense_front_state(&front->dense, front->n, fronts->is_rounded, stream);
     if (stream->restoring && front->dense.is_large) air_find_places(front);
 }
 
@@ -286,22 +286,24 @@ static void fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *s
     if (stream->restoring)
         for (int f = 0; f < fronts->n_front; f++)
             empty_front(&fronts->front[f]);
-    fronts->front = stream_room(stream, fronts->front, &n, sizeof *fronts->front);
+    stream_count(stream, &n);
+    fronts->front = stream_room(stream, fronts->front, n, sizeof *fronts->front);
     if (stream->restoring) {
         memset(fronts->front, 0, (size_t)n * sizeof *fronts->front);
         fronts->n_front = fronts->front_capacity = (int)n;
     }
     stream_integer(stream, &fronts->unused_front, -1, (int)n - 1);
     for (int f = 0; f < fronts->n_front; f++)
-        front_state(&fronts->front[f], fronts->n_site, fronts->n_front, stream);
+        front_state(fronts, &fronts->front[f], stream);
 }
 
 static void memberships_state(struct kron_fronts *fronts,
                               struct checkpoint_stream *stream)
 {
     int64_t n = fronts->n_membership;
+    stream_count(stream, &n);
     fronts->membership =
-        stream_room(stream, fronts->membership, &n, sizeof *fronts->membership);
+        stream_room(stream, fronts->membership, n, sizeof *fronts->membership);
     if (stream->restoring) fronts->n_membership = fronts->membership_capacity = (int)n;
     stream_integer(stream, &fronts->unused_membership, -1, (int)n - 1);
     stream_integers(stream, fronts->first, fronts->n_site, -1, (int)n - 1);
