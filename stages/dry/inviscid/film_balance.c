@@ -4,12 +4,14 @@
 // that are held stay 0. In both the true residual, from differences of compensated
 // levels, decides when it is enough.
 //
-// The preconditioner is kept while few sites are held and freed, and from one moment of
-// drying to the next, since making one costs as much as some 20 iterations. With M the
-// approximate factor of the sites that were not held when it was made,
-//     z = M^-1 r                at those of them that are there and not held now,
+// The preconditioner is an approximate factor in two parts. Sites that may be held or
+// freed, and those with many links, come last. What elimination of the others leaves
+// between them is a small network, and only this is eliminated anew when one is held or
+// freed. The first part is kept from one moment of drying to the next, while few sites
+// come or go: making it costs as much as some 30 iterations. With M both parts,
+//     z = M^-1 r                at sites that are there and not held now,
 //         r / diagonal          at the others that are not held.
-// Both parts are symmetric and positive definite.
+// Both are symmetric and positive definite.
 #include "film_balance.h"
 
 #include "basics/memory.h"
@@ -25,23 +27,34 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// A new factor is made once so many sites have been held or freed since the last: each
-// costs an iteration or two, and a factor as much as some 20.
+// The first part is made anew once so many sites have come or gone, or are held that
+// are not among the last.
 enum { MOST_CHANGED = 20 };
-
-// Sites with more links (clusters around which films are everywhere) are no part of the
-// factor: eliminating them takes time that grows as the square of their links, and
-// without them it costs two iterations each.
+// Sites with more links (clusters around which films are everywhere) are among the
+// last.
 enum { MOST_LINKS = 100 };
+// Clusters of a level below so many times the least may be held before long.
+static const double NEAR = 1.05;
+
+// Of one number.
+static const double ROUNDING = 1e-15;
 
 enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
 
+// Rows are those sites that come first, then the last ones.
 struct film_factor {
-    struct approximate_cholesky *approximate; // NULL: to be made
-    int n;
-    int *place;    // (n) of its rows, ascending
-    int *site;     // (n) the site there now; -1: none
-    double *b, *x; // (n)
+    struct approximate_cholesky *first, *last; // NULL: to be made
+    int n, n_first;
+    int *place; // (n) ascending
+    int *row;   // (n) of each place
+    int *site;  // (n) by row, the site there now; -1: none
+    int n_new, new_capacity;
+    int *new_site;                   // (n_new) sites now that have no row
+    int n_link;                      // between rows from n_first on
+    struct link *link;               // (n_link)
+    int *order;                      // (n - n_first) of each row in LAST
+    bool *is_free;                   // (n - n_first) not held when LAST was made
+    double *b, *x, *b_last, *x_last; // (n) and (n - n_first)
 };
 
 struct film_factor *film_factor_create(void)
@@ -51,11 +64,19 @@ struct film_factor *film_factor_create(void)
 
 static void forget(struct film_factor *factor)
 {
-    approximate_cholesky_free(factor->approximate);
+    approximate_cholesky_free(factor->first);
+    approximate_cholesky_free(factor->last);
     free(factor->place);
+    free(factor->row);
     free(factor->site);
+    free(factor->new_site);
+    free(factor->link);
+    free(factor->order);
+    free(factor->is_free);
     free(factor->b);
     free(factor->x);
+    free(factor->b_last);
+    free(factor->x_last);
     *factor = (struct film_factor){0};
 }
 
@@ -66,42 +87,34 @@ void film_factor_free(struct film_factor *factor)
     free(factor);
 }
 
-// --- sites that are not held -------------------------------------------------------
+// --- sites in another order --------------------------------------------------------
 
-// The sites in another order: first those that are not held, N of them.
-struct free_sites {
+// Those that are not LAST come first, N of them; MATRIX has their rows.
+struct ordered_sites {
     int n;
     int *site, *order; // (all) the site at each place, and the place of each site
     struct conductance_matrix matrix; // (n)
 };
 
-static bool is_hub(const struct film_flow *flow, int i, int most)
+static void order_sites(struct ordered_sites *sites, int n_all, const bool *last)
 {
-    return flow->matrix->offset[i + 1] - flow->matrix->offset[i] > most;
-}
-
-static void number_free(const struct film_flow *flow, struct free_sites *sites,
-                        int most)
-{
-    const int n_all = flow->matrix->n;
     sites->n = 0;
-    for (int hold = 0; hold < 2; hold++)
-        for (int i = 0, n = sites->n; i < n_all; i++) {
-            if ((flow->held[i] || is_hub(flow, i, most)) != hold) continue;
+    for (int later = 0, n = 0; later < 2; later++)
+        for (int i = 0; i < n_all; i++) {
+            if (last[i] != later) continue;
             sites->order[i] = n;
             sites->site[n++] = i;
-            if (!hold) sites->n = n;
+            sites->n += !later;
         }
 }
 
-// The rows of the sites that are not held, under their numbers.
-static struct free_sites free_sites_init(const struct film_flow *flow, int most)
+static struct ordered_sites ordered_sites_init(const struct conductance_matrix *all,
+                                               const bool *last)
 {
-    const struct conductance_matrix *all = flow->matrix;
     const size_t n_all = (size_t)all->n;
-    struct free_sites sites = {.site = NEW_ARRAY(int, n_all),
-                               .order = NEW_ARRAY(int, n_all)};
-    number_free(flow, &sites, most);
+    struct ordered_sites sites = {.site = NEW_ARRAY(int, n_all),
+                                  .order = NEW_ARRAY(int, n_all)};
+    order_sites(&sites, all->n, last);
     struct conductance_matrix *matrix = &sites.matrix;
     *matrix =
         (struct conductance_matrix){.n = sites.n,
@@ -123,7 +136,7 @@ static struct free_sites free_sites_init(const struct film_flow *flow, int most)
     return sites;
 }
 
-static void free_sites_free(struct free_sites *sites)
+static void ordered_sites_free(struct ordered_sites *sites)
 {
     free(sites->site);
     free(sites->order);
@@ -146,17 +159,25 @@ static double flows_at(const struct film_flow *flow, int i)
 // The sum of what does not balance, less what rounding makes: of flows, which are large
 // until all sites are held that must be, and of levels, which have the digits of two
 // numbers. With those of one all levels would be equal where films conduct 1e9 times
-// what evaporates.
-static double imbalance(const struct film_flow *flow, const double *residual)
+// what evaporates. Flows are summed only where rounding may decide whether the sum is
+// above TOLERANCE: none is larger than if it came from the highest level to 0.
+static double imbalance(const struct film_flow *flow, double tolerance,
+                        const double *residual)
 {
-    double sum = 0, rounding = 0;
+    double sum = 0, levels = 0, flows = 0, diagonal = 0, most = 0;
     for (int i = 0; i < flow->matrix->n; i++) {
+        const double level = fabs(compensated_value(flow->level[i]));
+        most = fmax(most, level);
         if (flow->held[i]) continue;
-        const double level = compensated_value(flow->level[i]);
         sum += fabs(residual[i]);
-        rounding += flows_at(flow, i) + 1e-15 * flow->matrix->diagonal[i] * level;
+        levels += flow->matrix->diagonal[i] * level;
+        diagonal += flow->matrix->diagonal[i];
     }
-    return sum - 1e-15 * rounding;
+    if (!(sum > tolerance) || sum - ROUNDING * (3 * diagonal * most) > tolerance)
+        return sum;
+    for (int i = 0; i < flow->matrix->n; i++)
+        if (!flow->held[i]) flows += flows_at(flow, i);
+    return sum - ROUNDING * (flows + ROUNDING * levels);
 }
 
 static void find_residual(const struct film_flow *flow, double *residual)
@@ -170,7 +191,7 @@ static void find_residual(const struct film_flow *flow, double *residual)
 
 static bool solve_directly(struct film_flow *flow, double tolerance, double *residual)
 {
-    struct free_sites sites = free_sites_init(flow, INT_MAX);
+    struct ordered_sites sites = ordered_sites_init(flow->matrix, flow->held);
     struct cholesky *cholesky = NULL;
     struct reason reason;
     double *b = NEW_ARRAY(double, sites.n), *x = NEW_ARRAY(double, sites.n);
@@ -183,10 +204,10 @@ static bool solve_directly(struct film_flow *flow, double tolerance, double *res
         for (int k = 0; able && k < sites.n; k++)
             compensated_add(&flow->level[sites.site[k]], x[k]);
         find_residual(flow, residual);
-        found = !(imbalance(flow, residual) > tolerance);
+        found = !(imbalance(flow, tolerance, residual) > tolerance);
     }
     cholesky_free(cholesky);
-    free_sites_free(&sites);
+    ordered_sites_free(&sites);
     free(b);
     free(x);
     return found;
@@ -194,38 +215,139 @@ static bool solve_directly(struct film_flow *flow, double tolerance, double *res
 
 // --- large systems -----------------------------------------------------------------
 
-static void make_factor(const struct film_flow *flow)
+// Sites that may be held or freed before long, or have many links.
+static bool *find_last(const struct film_flow *flow)
 {
-    struct film_factor *factor = flow->factor;
-    struct free_sites sites = free_sites_init(flow, MOST_LINKS);
-    forget(factor);
-    factor->approximate = approximate_cholesky_create(&sites.matrix);
-    factor->n = sites.n;
-    factor->place = NEW_ARRAY(int, sites.n);
-    factor->site = NEW_ARRAY(int, sites.n);
-    factor->b = NEW_ARRAY(double, sites.n);
-    factor->x = NEW_ARRAY(double, sites.n);
-    for (int k = 0; k < sites.n; k++)
-        factor->place[k] = flow->place[sites.site[k]];
-    free_sites_free(&sites);
+    const struct conductance_matrix *matrix = flow->matrix;
+    bool *last = NEW_ARRAY(bool, matrix->n);
+    for (int i = 0; i < matrix->n; i++)
+        last[i] = flow->held[i] || flow->taken[i] > 0 ||
+                  (flow->least[i] > 0 &&
+                   compensated_value(flow->level[i]) < NEAR * flow->least[i]) ||
+                  matrix->offset[i + 1] - matrix->offset[i] > MOST_LINKS;
+    return last;
 }
 
-// Both lists of places ascend. Returns how many sites are held that were not, or the
-// other way round, or have come or gone.
+// Links that are there already between the sites that come last.
+static void add_links(const struct film_flow *flow, const struct ordered_sites *sites,
+                      struct film_factor *factor)
+{
+    const struct conductance_matrix *matrix = flow->matrix;
+    int capacity = factor->n_link;
+    for (int row = sites->n; row < matrix->n; row++) {
+        const int i = sites->site[row];
+        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
+            const int other = sites->order[matrix->column[k]];
+            if (other <= row) continue;
+            GROW_ARRAY(factor->link, factor->n_link, capacity);
+            factor->link[factor->n_link++] =
+                (struct link){{row, other}, matrix->value[k]};
+        }
+    }
+}
+
+static void make_first(const struct film_flow *flow)
+{
+    struct film_factor *factor = flow->factor;
+    const int n = flow->matrix->n;
+    bool *last = find_last(flow);
+    struct ordered_sites sites = ordered_sites_init(flow->matrix, last);
+    const int n_last = n - sites.n;
+    forget(factor);
+    factor->n = n;
+    factor->n_first = sites.n;
+    factor->first = approximate_cholesky_create_partly(&sites.matrix, n_last,
+                                                       &factor->n_link, &factor->link);
+    add_links(flow, &sites, factor);
+    factor->place = NEW_ARRAY(int, n);
+    factor->row = sites.order;
+    factor->site = NEW_ARRAY(int, n);
+    factor->order = NEW_ARRAY(int, n_last);
+    factor->is_free = NEW_ARRAY(bool, n_last);
+    factor->b = NEW_ARRAY(double, n);
+    factor->x = NEW_ARRAY(double, n);
+    factor->b_last = NEW_ARRAY(double, n_last);
+    factor->x_last = NEW_ARRAY(double, n_last);
+    for (int i = 0; i < n; i++)
+        factor->place[i] = flow->place[i];
+    sites.order = NULL;
+    ordered_sites_free(&sites);
+    free(last);
+}
+
+static bool is_free(const struct film_flow *flow, int row)
+{
+    const int site = flow->factor->site[row];
+    return site >= 0 && !flow->held[site];
+}
+
+// Eliminates what is free among the last rows; the others are held.
+static void make_last(const struct film_flow *flow)
+{
+    struct film_factor *factor = flow->factor;
+    const int n_last = factor->n - factor->n_first;
+    int n_free = 0, n = 0;
+    for (int free = 1; free >= 0; free--) {
+        for (int k = 0; k < n_last; k++)
+            if (is_free(flow, factor->n_first + k) == free) factor->order[k] = n++;
+        if (free) n_free = n;
+    }
+    for (int k = 0; k < n_last; k++)
+        factor->is_free[k] = factor->order[k] < n_free;
+    struct link *link = NEW_ARRAY(struct link, factor->n_link);
+    for (int l = 0; l < factor->n_link; l++) {
+        link[l] = factor->link[l];
+        for (int end = 0; end < 2; end++)
+            link[l].site[end] = factor->order[link[l].site[end] - factor->n_first];
+    }
+    struct conductance_matrix matrix =
+        conductance_matrix_of_links(n_free, n_last, factor->n_link, link);
+    approximate_cholesky_free(factor->last);
+    factor->last = approximate_cholesky_create(&matrix);
+    conductance_matrix_free(&matrix);
+    free(link);
+}
+
+// Both lists of places ascend. Returns how many sites have come or gone, or are held
+// that are not among the last.
 static int find_sites(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
-    int there = 0, wanted = 0;
-    for (int k = 0, i = 0; k < factor->n; k++) {
-        while (i < flow->matrix->n && flow->place[i] < factor->place[k])
-            i++;
-        factor->site[k] =
-            i < flow->matrix->n && flow->place[i] == factor->place[k] ? i : -1;
-        there += factor->site[k] >= 0 && !flow->held[i];
+    const int n = flow->matrix->n;
+    int i = 0, gone = 0, held = 0;
+    factor->n_new = 0;
+    for (int k = 0; k <= factor->n; k++) {
+        const int place = k < factor->n ? factor->place[k] : INT_MAX;
+        for (; i < n && flow->place[i] < place; i++) {
+            GROW_ARRAY(factor->new_site, factor->n_new, factor->new_capacity);
+            factor->new_site[factor->n_new++] = i;
+        }
+        if (k == factor->n) break;
+        const int row = factor->row[k];
+        const bool found = i < n && flow->place[i] == place;
+        held += found && row < factor->n_first && flow->held[i];
+        gone += !found;
+        factor->site[row] = found ? i++ : -1;
     }
-    for (int i = 0; i < flow->matrix->n; i++)
-        wanted += !flow->held[i] && !is_hub(flow, i, MOST_LINKS);
-    return abs(factor->n - there) + abs(wanted - there);
+    return gone + factor->n_new + held;
+}
+
+static bool last_has_changed(const struct film_flow *flow)
+{
+    const struct film_factor *factor = flow->factor;
+    for (int row = factor->n_first; row < factor->n; row++)
+        if (is_free(flow, row) != factor->is_free[row - factor->n_first]) return true;
+    return false;
+}
+
+static void prepare_factor(const struct film_flow *flow)
+{
+    struct film_factor *factor = flow->factor;
+    if (!factor->first || find_sites(flow) > MOST_CHANGED) {
+        make_first(flow);
+        find_sites(flow);
+    }
+    if (!factor->last || last_has_changed(flow)) make_last(flow);
 }
 
 static void multiply(void *context, const double *x, double *image)
@@ -240,25 +362,32 @@ static void precondition(void *context, const double *residual, double *z)
 {
     const struct film_flow *flow = context;
     const struct film_factor *factor = flow->factor;
-    for (int i = 0; i < flow->matrix->n; i++)
+    const int n = factor->n, n_first = factor->n_first;
+    for (int k = 0; k < factor->n_new; k++) {
+        const int i = factor->new_site[k];
         z[i] = flow->held[i] ? 0 : residual[i] / flow->matrix->diagonal[i];
-    for (int k = 0; k < factor->n; k++)
-        factor->b[k] = factor->site[k] >= 0 ? residual[factor->site[k]] : 0;
-    approximate_cholesky_apply(factor->approximate, factor->b, factor->x);
-    for (int k = 0; k < factor->n; k++)
-        if (factor->site[k] >= 0 && !flow->held[factor->site[k]])
-            z[factor->site[k]] = factor->x[k];
+    }
+    for (int row = 0; row < n; row++)
+        factor->b[row] = factor->site[row] >= 0 ? residual[factor->site[row]] : 0;
+    double *kept = factor->x + n_first;
+    approximate_cholesky_reduce(factor->first, factor->b, kept);
+    for (int k = 0; k < n - n_first; k++)
+        factor->b_last[factor->order[k]] = kept[k];
+    approximate_cholesky_apply(factor->last, factor->b_last, factor->x_last);
+    for (int k = 0; k < n - n_first; k++)
+        kept[k] = factor->is_free[k] ? factor->x_last[factor->order[k]] : 0;
+    approximate_cholesky_extend(factor->first, kept, factor->x);
+    for (int row = 0; row < n; row++) {
+        const int i = factor->site[row];
+        if (i >= 0) z[i] = flow->held[i] ? 0 : factor->x[row];
+    }
 }
 
 static void correct(struct film_flow *flow, double reduction, const double *residual,
                     double *work)
 {
     const size_t n = (size_t)flow->matrix->n;
-    const struct film_factor *factor = flow->factor;
-    if (!factor->approximate || find_sites(flow) > MOST_CHANGED) {
-        make_factor(flow);
-        find_sites(flow);
-    }
+    prepare_factor(flow);
     double *r = work, *x = work + n;
     for (size_t i = 0; i < n; i++)
         r[i] = flow->held[i] ? 0 : residual[i];
@@ -270,7 +399,9 @@ static void correct(struct film_flow *flow, double reduction, const double *resi
                                            multiply,
                                            precondition,
                                            {work + 2 * n, work + 3 * n, work + 4 * n}};
-    flow->iterations += conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
+    const int iterations =
+        conjugate_gradients(&problem, r, x, reduction, MOST_ITERATIONS);
+    flow->iterations += iterations;
     for (size_t i = 0; i < n; i++)
         compensated_add(&flow->level[i], size * x[i]);
 }
@@ -279,11 +410,11 @@ static bool solve_iteratively(struct film_flow *flow, double tolerance,
                               double *residual)
 {
     double *work = NEW_ARRAY(double, 5 * (size_t)flow->matrix->n);
-    double left = imbalance(flow, residual);
+    double left = imbalance(flow, tolerance, residual);
     for (int most = MOST_CORRECTIONS; left > tolerance && most > 0; most--) {
         correct(flow, fmax(REDUCTION, MARGIN * tolerance / left), residual, work);
         find_residual(flow, residual);
-        left = imbalance(flow, residual);
+        left = imbalance(flow, tolerance, residual);
     }
     free(work);
     return left <= tolerance;
@@ -292,7 +423,7 @@ static bool solve_iteratively(struct film_flow *flow, double tolerance,
 bool film_balance(struct film_flow *flow, double tolerance, double *residual)
 {
     find_residual(flow, residual);
-    if (!(imbalance(flow, residual) > tolerance)) return true;
+    if (!(imbalance(flow, tolerance, residual) > tolerance)) return true;
     return flow->matrix->n <= DIRECT_MOST
                ? solve_directly(flow, tolerance, residual)
                : solve_iteratively(flow, tolerance, residual);

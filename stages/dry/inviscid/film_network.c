@@ -64,6 +64,7 @@ static int ends_at(const struct occupancy *occupancy, int node, struct film_end 
 double film_depth(const struct occupancy *occupancy, int throat)
 {
     const struct network *network = occupancy->network;
+    if (!(occupancy->film_law->weight > 0)) return 0;
     return (network->packing.upper.z - throat_middle(network, throat).z) /
            occupancy->length;
 }

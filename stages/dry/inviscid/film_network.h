@@ -15,7 +15,7 @@
 // A film between two places.
 struct film_link {
     struct link link;
-    double depth; // of the throat's middle below the top of the box, scaled
+    double depth; // of the throat's middle, as film_depth says
     double ratio; // of what flows there to what would without gravity
 };
 
@@ -33,7 +33,7 @@ struct film_network {
 // it with film_network_free.
 struct film_network film_network_init(const struct occupancy *occupancy);
 
-// How deep the middle of THROAT is below the top of the box, scaled.
+// How deep the middle of THROAT is below the top of the box, scaled; 0 without gravity.
 double film_depth(const struct occupancy *occupancy, int throat);
 
 // Under gravity: conductances as LEVELs (n_site) make them. Returns by how much the

@@ -26,14 +26,14 @@
 // The factor, in the order of elimination. Each vertex passes a share of what it holds
 // to each of its neighbours.
 struct approximate_cholesky {
-    int n;
+    int n, n_kept;
     int *vertex;  // (n) in the order of elimination
     float *scale; // (n) what D divides by
     int n_block;
     struct block *block;
-    int *neighbour; // by their places in that order; n: where the pressure is given
+    int *neighbour; // by their places in that order; from n on: kept places, ground
     float *share;
-    float *work; // (n+1)
+    float *work; // (n+n_kept+1)
     int block_capacity;
     size_t n_entry, capacity;
 };
@@ -227,10 +227,12 @@ static int append(struct approximate_cholesky *factor, int n, const struct round
 // order.
 static void renumber(struct approximate_cholesky *factor)
 {
-    int *place = NEW_ARRAY(int, factor->n + 1);
+    const int ground = factor->n + factor->n_kept;
+    int *place = NEW_ARRAY(int, ground + 1);
     for (int step = 0; step < factor->n; step++)
         place[factor->vertex[step]] = step;
-    place[factor->n] = factor->n;
+    for (int k = factor->n; k <= ground; k++)
+        place[k] = k;
     for (size_t k = 0; k < factor->n_entry; k++)
         factor->neighbour[k] = place[factor->neighbour[k]];
     free(place);
@@ -245,16 +247,18 @@ static double max_conductance(const struct conductance_matrix *matrix)
 }
 
 struct approximate_cholesky *
-approximate_cholesky_create(const struct conductance_matrix *matrix)
+approximate_cholesky_create_partly(const struct conductance_matrix *matrix, int n_kept,
+                                   int *n_link, struct link **link)
 {
     const int n = matrix->n;
     const double max_weight = max_conductance(matrix);
-    struct elimination_graph graph = elimination_graph_of(matrix, max_weight);
+    struct elimination_graph graph = elimination_graph_of(matrix, n_kept, max_weight);
     struct approximate_cholesky *factor = NEW_ARRAY(struct approximate_cholesky, 1);
     *factor = (struct approximate_cholesky){.n = n,
+                                            .n_kept = n_kept,
                                             .vertex = NEW_ARRAY(int, n),
                                             .scale = NEW_ARRAY(float, n),
-                                            .work = NEW_ARRAY(float, n + 1)};
+                                            .work = NEW_ARRAY(float, n + n_kept + 1)};
     reserve_entries(factor, 5 * (size_t)n);
     struct round round = {0};
     reserve(&round, 1);
@@ -262,12 +266,28 @@ approximate_cholesky_create(const struct conductance_matrix *matrix)
         eliminate_independent(&graph, &round);
         done = append(factor, done, &round, max_weight);
     }
+    *n_link = graph.n_link;
+    *link = graph.link;
+    graph.link = NULL;
+    for (int l = 0; l < *n_link; l++)
+        (*link)[l].conductance *= max_weight;
     elimination_graph_free(&graph);
     free(round.row);
     free(round.neighbour);
     free(round.share);
     free(round.sum);
     renumber(factor);
+    return factor;
+}
+
+struct approximate_cholesky *
+approximate_cholesky_create(const struct conductance_matrix *matrix)
+{
+    int none;
+    struct link *link;
+    struct approximate_cholesky *factor =
+        approximate_cholesky_create_partly(matrix, 0, &none, &link);
+    free(link);
     return factor;
 }
 
@@ -283,8 +303,8 @@ void approximate_cholesky_free(struct approximate_cholesky *factor)
     free(factor);
 }
 
-void approximate_cholesky_apply(struct approximate_cholesky *factor, const double *b,
-                                double *x)
+void approximate_cholesky_reduce(struct approximate_cholesky *factor, const double *b,
+                                 double *kept)
 {
     const int n = factor->n;
     float *restrict y = factor->work;
@@ -292,6 +312,8 @@ void approximate_cholesky_apply(struct approximate_cholesky *factor, const doubl
     const float *share = factor->share;
     for (int step = 0; step < n; step++)
         y[step] = (float)b[factor->vertex[step]];
+    for (int k = n; k < n + factor->n_kept; k++)
+        y[k] = (float)b[k];
     for (int block = 0, step = 0; block < factor->n_block; block++) {
         const int length = factor->block[block].length;
         for (; step < factor->block[block].end; step++) {
@@ -303,7 +325,20 @@ void approximate_cholesky_apply(struct approximate_cholesky *factor, const doubl
             share += length;
         }
     }
-    y[n] = 0;
+    for (int k = 0; k < factor->n_kept; k++)
+        kept[k] = (double)y[n + k];
+}
+
+void approximate_cholesky_extend(struct approximate_cholesky *factor,
+                                 const double *kept, double *x)
+{
+    const int n = factor->n;
+    float *restrict y = factor->work;
+    const int *neighbour = factor->neighbour + factor->n_entry;
+    const float *share = factor->share + factor->n_entry;
+    for (int k = 0; k < factor->n_kept; k++)
+        y[n + k] = (float)(x[n + k] = kept[k]);
+    y[n + factor->n_kept] = 0;
     for (int block = factor->n_block - 1, step = n; block >= 0; block--) {
         const int length = factor->block[block].length;
         const int begin = block ? factor->block[block - 1].end : 0;
@@ -318,4 +353,12 @@ void approximate_cholesky_apply(struct approximate_cholesky *factor, const doubl
     }
     for (int step = 0; step < n; step++)
         x[factor->vertex[step]] = (double)y[step];
+}
+
+void approximate_cholesky_apply(struct approximate_cholesky *factor, const double *b,
+                                double *x)
+{
+    double none[1] = {0};
+    approximate_cholesky_reduce(factor, b, none);
+    approximate_cholesky_extend(factor, none, x);
 }

@@ -21,12 +21,12 @@ static int find(const struct half_edge *half, int count, int to)
 }
 
 // Copies row I of the matrix, parallel links merged.
-static int copy_row(const struct conductance_matrix *matrix, int i, double max_weight,
-                    struct half_edge *half)
+static int copy_row(const struct conductance_matrix *matrix, int i, int ground,
+                    double max_weight, struct half_edge *half)
 {
     int count = 0;
     for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
-        const int to = matrix->column[k] < matrix->n ? matrix->column[k] : matrix->n;
+        const int to = matrix->column[k] < ground ? matrix->column[k] : ground;
         const int place = find(half, count, to);
         if (place == count) half[count++] = (struct half_edge){0, to};
         half[place].weight += (float)(matrix->value[k] / max_weight);
@@ -43,20 +43,22 @@ static void reserve_entries(struct elimination_graph *graph, int n, size_t count
 }
 
 struct elimination_graph elimination_graph_of(const struct conductance_matrix *matrix,
-                                              double max_weight)
+                                              int n_kept, double max_weight)
 {
-    const int n = matrix->n;
-    struct elimination_graph graph = {
-        .n = n, .vertex = NEW_ARRAY(struct vertex, n), .index = NEW_ARRAY(int, n + 1)};
+    const int n = matrix->n, ground = n + n_kept;
+    struct elimination_graph graph = {.n = n,
+                                      .n_kept = n_kept,
+                                      .vertex = NEW_ARRAY(struct vertex, n),
+                                      .index = NEW_ARRAY(int, ground + 1)};
     reserve_entries(&graph, n, (size_t)matrix->offset[n]);
     for (int i = 0; i < n; i++) {
         const int first = (int)graph.n_half;
-        const int count = copy_row(matrix, i, max_weight, &graph.half[first]);
+        const int count = copy_row(matrix, i, ground, max_weight, &graph.half[first]);
         graph.vertex[i] = (struct vertex){first, count, count + SPARE, false, false};
         graph.n_half += (size_t)count + SPARE;
-        graph.index[i] = i;
     }
-    graph.index[n] = n;
+    for (int i = 0; i <= ground; i++)
+        graph.index[i] = i;
     return graph;
 }
 
@@ -65,6 +67,7 @@ void elimination_graph_free(struct elimination_graph *graph)
     free(graph->vertex);
     free(graph->index);
     free(graph->half);
+    free(graph->link);
     *graph = (struct elimination_graph){0};
 }
 
@@ -82,9 +85,21 @@ static void move_row(struct elimination_graph *graph, struct vertex *vertex)
     graph->n_half += (size_t)vertex->capacity;
 }
 
+// Between given places, each pair once.
+static void add_link(struct elimination_graph *graph, int at, int to, float weight)
+{
+    if (to <= at) return;
+    GROW_ARRAY(graph->link, graph->n_link, graph->link_capacity);
+    graph->link[graph->n_link++] =
+        (struct link){{graph->index[at], graph->index[to]}, (double)weight};
+}
+
 static void add_weight(struct elimination_graph *graph, int at, int to, float weight)
 {
-    if (at == graph->n) return;
+    if (at >= graph->n) {
+        add_link(graph, at, to, weight);
+        return;
+    }
     struct vertex *vertex = &graph->vertex[at];
     struct half_edge *half = &graph->half[vertex->first];
     const int k = find(half, vertex->count, to);
@@ -99,7 +114,7 @@ static void add_weight(struct elimination_graph *graph, int at, int to, float we
 void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
                                    int eliminated)
 {
-    if (at == graph->n) return;
+    if (at >= graph->n) return;
     struct vertex *vertex = &graph->vertex[at];
     struct half_edge *half = &graph->half[vertex->first];
     half[find(half, vertex->count, eliminated)] = half[vertex->count - 1];
@@ -117,7 +132,7 @@ void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
 void elimination_graph_compact(struct elimination_graph *graph)
 {
     const struct elimination_graph old = *graph;
-    int *number = NEW_ARRAY(int, old.n + 1);
+    int *number = NEW_ARRAY(int, old.n + old.n_kept + 1);
     size_t count = 0;
     graph->n = 0;
     for (int i = 0; i < old.n; i++) {
@@ -125,7 +140,8 @@ void elimination_graph_compact(struct elimination_graph *graph)
         graph->n += !old.vertex[i].eliminated;
         count += old.vertex[i].eliminated ? 0 : (size_t)old.vertex[i].count;
     }
-    number[old.n] = graph->n;
+    for (int k = 0; k <= old.n_kept; k++)
+        number[old.n + k] = graph->n + k;
     reserve_entries(graph, graph->n, count);
     graph->n_half = 0;
     for (int i = 0; i < old.n; i++) {
@@ -141,7 +157,8 @@ void elimination_graph_compact(struct elimination_graph *graph)
         graph->index[number[i]] = old.index[i];
         graph->n_half += (size_t)from.count + SPARE;
     }
-    graph->index[graph->n] = old.index[old.n];
+    for (int k = 0; k <= old.n_kept; k++)
+        graph->index[graph->n + k] = old.index[old.n + k];
     free(old.half);
     free(number);
 }

@@ -13,7 +13,7 @@
 // start. A float: the factor only preconditions, and two fit where one double would.
 struct half_edge {
     float weight;
-    int to; // n of the graph: a place where the pressure is given
+    int to; // n of the graph or more: a place without a row
 };
 
 // A vertex: its edges are half[first] to half[first + count - 1], in no order, each
@@ -24,25 +24,29 @@ struct vertex {
                                            // was last packed
 };
 
-// Given places are one vertex, n, without a row: edges to it are ground. It owns its
-// arrays. Vertices are numbered anew when the graph is compacted; INDEX says what they
-// were.
+// Given places have no row. The first N_KEPT of them, n to n + n_kept - 1, keep their
+// names, and links that elimination leaves between them are gathered in LINK; the
+// others are one, n + n_kept: edges to it are ground. It owns its arrays. Vertices are
+// numbered anew when the graph is compacted; INDEX says what they were.
 struct elimination_graph {
-    int n;
+    int n, n_kept;
     struct vertex *vertex; // (n)
-    int *index;            // (n+1) of each in the matrix; the last: given places
+    int *index;            // (n+n_kept+1) of each in the matrix; the last: ground
     struct half_edge *half;
     size_t n_half, capacity;
+    int n_link, link_capacity;
+    struct link
+        *link; // (n_link) conductances are weights; parallel ones are not merged
 };
 
 // The graph of MATRIX, whose largest conductance is MAX_WEIGHT. The caller frees it
 // with elimination_graph_free. Parallel links become one edge.
 struct elimination_graph elimination_graph_of(const struct conductance_matrix *matrix,
-                                              double max_weight);
+                                              int n_kept, double max_weight);
 void elimination_graph_free(struct elimination_graph *graph);
 
 // Replaces the edge from AT to ELIMINATED by one of WEIGHT between AT and OTHER, merged
-// with one that is there already. Sites of given potential keep no edges.
+// with one that is there already. Given places keep no edges.
 void elimination_graph_replace_edge(struct elimination_graph *graph, int at,
                                     int eliminated, int other, float weight);
 
