@@ -71,9 +71,11 @@ static void find_most(const struct film_flow *flow, double *most)
         most[i] = flow->least[i] > 0 ? lack(flow, i) : 0;
     for (int link = 0; link < NEAR; link++) {
         memcpy(before, most, (size_t)matrix->n * sizeof *most);
-        for (int i = 0; i < matrix->n; i++)
+        for (int i = 0; i < matrix->n; i++) {
+            if (!(before[i] > 0)) continue;
             for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
-                most[i] = fmax(most[i], before[matrix->column[k]]);
+                most[matrix->column[k]] = fmax(most[matrix->column[k]], before[i]);
+        }
     }
     free(before);
 }
