@@ -145,5 +145,5 @@ for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
 refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=films", net, "-o", at("no")],
                          capture_output=True, text=True, check=False)
-ok(refused.returncode == 65 and "rings: must be none where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
+ok(refused.returncode == 65 and "rings: must not be films where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
 done()

@@ -144,9 +144,6 @@ for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is
                        (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved")]:
     refused = subprocess.run([f"{BIN}/dry", "-q", *sets("rings=isolated", *settings), net], capture_output=True, text=True, check=False)
     ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings} is refused", refused.stderr)
-refused = subprocess.run([f"{BIN}/dry", "-q", "--checkpoint", at("kept"), "-s", "rings=isolated", net, "-o", at("no")],
-                         capture_output=True, text=True, check=False)
-ok(refused.returncode == 65 and "rings: must be none where a checkpoint is kept" in refused.stderr, "so is a checkpoint", refused.stderr)
 
 # What rings hold cannot go along with grains that move; without rings the same grains do.
 run("dem-replay", "-q", *sets("engine=explicit", "bond.by=distance", "shrinkage.strain=1e-9", "shrinkage.steps=1",
