@@ -110,9 +110,9 @@ library_objects := $(call object,$(library_sources))
 stage_sources = $(wildcard stages/$1/*.c stages/$1/*.S stages/$1/*/*.c)
 core_sources := $(filter-out %/main.c,$(foreach s,$(STAGES),$(call stage_sources,$s)))
 
-# A test is a C program; support_*.c beside it is linked into each.
+# A test is a C program; test.c, its main program, and support_*.c beside it are linked into each.
 tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
-support_for = $(call object,$(wildcard tests/$1/support_*.c))
+support_for = $(call object,$(wildcard tests/$1/support_*.c) $(if $(filter bench%,$1),,tests/test.c))
 test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
 C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
 VOID := $(call test_programs,bench/void)
@@ -192,7 +192,7 @@ endef
 $(foreach d,unit physics bench bench/void,$(eval $(call test_rules,$d)))
 
 .SECONDARY:
-include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,*/* */*/* */*/*/*)))
+include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,* */* */*/* */*/*/*)))
 
 # --- pipelines: re-run by content -----------------------------------------------------
 # tools/memo decides what is stale from what files hold, never from their times. It is
@@ -377,7 +377,7 @@ speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minu
 
 # --- house ----------------------------------------------------------------------------
 
-C_SOURCES := $(wildcard $(foreach d,* */* lib/*/*,stages/$d/*.[ch] stages/$d/*.cpp) tests/*.h \
+C_SOURCES := $(wildcard $(foreach d,* */* lib/*/*,stages/$d/*.[ch] stages/$d/*.cpp) tests/*.[ch] \
 	tests/*/*.[ch] tests/bench/void/*.[ch])
 
 .PHONY: format tidy help

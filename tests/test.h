@@ -12,19 +12,28 @@
 #include <cmocka.h>
 // clang-format on
 #include <math.h>
+#include <stdbool.h>
 
-// A test that only some machines can run: on the others a line that TAP takes for
-// skipped (cmocka's own skip() says "not ok", which harnesses count as failed).
-#define UNIT_TEST_WHERE(can_run, why_not, test)                                        \
+// A test is TEST(what_it_shows) { ... }. The program (test.c) runs those of its file in
+// their order there.
+#define TEST(name) TEST_WHERE(true, "", name)
+
+// One that only some machines can run: on the others a line that TAP takes for skipped
+// (cmocka's own skip() says "not ok", which harnesses count as failed).
+#define TEST_WHERE(can_run, why_not, name)                                             \
+    static void test_##name(void **state);                                             \
+    __attribute__((constructor)) static void add_test_##name(void)                     \
     {                                                                                  \
-        (can_run) ? #test : #test " # SKIP " why_not, (can_run) ? (test) : skip_test,  \
-            NULL, NULL, NULL                                                           \
-    }
+        if (can_run)                                                                   \
+            add_test(__LINE__, #name, test_##name);                                    \
+        else                                                                           \
+            add_test(__LINE__, #name " # SKIP " why_not, skip_test);                   \
+    }                                                                                  \
+    static void test_##name(__attribute__((unused)) void **state)
 
-static inline void skip_test(void **state)
-{
-    (void)state;
-}
+// Test NAME, which stands at LINE of its file.
+void add_test(int line, const char *name, CMUnitTestFunction test);
+void skip_test(void **state);
 
 static inline void assert_within(double got, double wanted, double tolerance)
 {

@@ -41,9 +41,8 @@ static double variance_of(const struct strength_scatter *scatter)
 
 // Kolmogorov and Smirnov's distance times sqrt(n) is below 1.63 in 99 of 100 samples;
 // moments lie within four standard errors of the widest, m = 1. Seeds are fixed.
-static void drawn_as_the_distribution_says(void **state)
+TEST(drawn_as_the_distribution_says)
 {
-    (void)state;
     enum { N = 100000 };
     const struct strength_scatter scatters[] = {
         {.law = STRENGTH_NORMAL, .variation = 0.05, .seed = 1},
@@ -76,9 +75,8 @@ static void drawn_as_the_distribution_says(void **state)
 }
 
 // The first of many are those of few; another seed gives others; one strength is none.
-static void one_number_a_bond(void **state)
+TEST(one_number_a_bond)
 {
-    (void)state;
     struct strength_scatter scatter = {
         .law = STRENGTH_WEIBULL, .modulus = 5, .seed = 7};
     double *few = draw_strengths(&scatter, 10), *many = draw_strengths(&scatter, 1000);
@@ -158,9 +156,8 @@ static int pull_chain(int n, double *relative, enum engine engine, double share,
 
 // Of N Weibull bonds in series the weakest is a Weibull strength too, n^(-1/m) as
 // large; and that is the pull at which the chain breaks, there and nowhere else.
-static void a_chain_is_as_strong_as_its_weakest_link(void **state)
+TEST(a_chain_is_as_strong_as_its_weakest_link)
 {
-    (void)state;
     enum { SEEDS = 400 };
     const double m = 5;
     const int length[] = {1, 4, 16};
@@ -187,9 +184,8 @@ static void a_chain_is_as_strong_as_its_weakest_link(void **state)
 }
 
 // The discrete elements break the same bond, if the pull grows slowly enough.
-static void the_same_link_in_cycles(void **state)
+TEST(the_same_link_in_cycles)
 {
-    (void)state;
     enum { N = 6 };
     for (int seed = 1; seed <= 5; seed++) {
         const struct strength_scatter scatter = {
@@ -209,9 +205,8 @@ static void the_same_link_in_cycles(void **state)
 
 // On a lattice with the spacing of 2.1 radii along x: touching leaves those out, a gap
 // of 5 % takes them in, one of 45 % the diagonals across faces too.
-static void bonded_by_touch_or_distance(void **state)
+TEST(bonded_by_touch_or_distance)
 {
-    (void)state;
     struct packing packing = cubic_lattice(3, 3, 3, false);
     for (int i = 0; i < packing.n_particle; i++)
         packing.position[i].x *= 1.05;
@@ -265,9 +260,8 @@ static void check_renumbered(const struct packing *packing, const int *order)
 
 // A bond is as strong however the grains are numbered: irregular ones, also where the
 // box repeats; and a lattice with the diagonals of its faces, which cross.
-static void as_strong_whatever_the_numbers(void **state)
+TEST(as_strong_whatever_the_numbers)
 {
-    (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(4, RADIUS, repeats);
         int *order = shuffled(packing.n_particle, &(uint64_t){5});
@@ -281,18 +275,4 @@ static void as_strong_whatever_the_numbers(void **state)
     check_renumbered(&packing, order);
     free(order);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(drawn_as_the_distribution_says),
-        cmocka_unit_test(one_number_a_bond),
-        cmocka_unit_test(a_chain_is_as_strong_as_its_weakest_link),
-        cmocka_unit_test(the_same_link_in_cycles),
-        cmocka_unit_test(bonded_by_touch_or_distance),
-        cmocka_unit_test(as_strong_whatever_the_numbers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,9 +47,8 @@ static struct bridge between(double radius, double angle, double contact_angle,
 // ---- closed forms ------------------------------------------------------------------
 
 // y = c cosh(x/c): no suction, and the force is 2 pi c times the tension.
-static void test_catenoid(void **state)
+TEST(catenoid)
 {
-    (void)state;
     const double radius = 2e-3;
     for (double liquid = 0.1; liquid < 0.7; liquid += 0.1)
         for (double angle = 0.3; angle < 0.9; angle += 0.2) {
@@ -72,9 +71,8 @@ static void test_catenoid(void **state)
 }
 
 // Contact lines at which the surface is vertical, at any length up to Rayleigh's.
-static void test_cylinder(void **state)
+TEST(cylinder)
 {
-    (void)state;
     const double radius = 3e-6;
     for (double liquid = 0.2; liquid < 1.3; liquid += 0.2)
         for (double share = 0.1; share < 0.8; share += 0.2) {
@@ -91,9 +89,8 @@ static void test_cylinder(void **state)
 }
 
 // A ball of liquid pierced by both spheres does not pull.
-static void test_sphere(void **state)
+TEST(sphere)
 {
-    (void)state;
     const double radius = 1, liquid = 0.5;
     for (double slope = 0.2; slope < 1.2; slope += 0.2) {
         const double ball = radius * sin(liquid) / cos(slope);
@@ -111,9 +108,8 @@ static void test_sphere(void **state)
 
 // At contact the force tends to 2 pi R gamma cos(theta) as the volume vanishes, with
 // the root of the volume.
-static void test_vanishing_volume(void **state)
+TEST(vanishing_volume)
 {
-    (void)state;
     for (int degrees = 0; degrees <= 80; degrees += 20) {
         const double angle = degrees * M_PI / 180;
         double last = INFINITY;
@@ -141,9 +137,8 @@ static double energy_slope(const struct bridge *bridge, double separation, doubl
     return slope / h;
 }
 
-static void test_force_is_slope_of_energy(void **state)
+TEST(force_is_slope_of_energy)
 {
-    (void)state;
     static const double shapes[][4] = {
         // other radius, two angles, volume
         {1, 0, 0, 1e-3},       {1, 0.6, 0.6, 1e-1},
@@ -171,9 +166,8 @@ static void test_force_is_slope_of_energy(void **state)
 
 // ---- symmetries --------------------------------------------------------------------
 
-static void test_scale_free(void **state)
+TEST(scale_free)
 {
-    (void)state;
     const struct bridge small = {{2e-9, 5e-9}, {0.3, 0.9}, 0.07, 1e-29};
     struct bridge large = small;
     for (int k = 0; k < 2; k++)
@@ -185,9 +179,8 @@ static void test_scale_free(void **state)
     close_to(far.suction, 1e-12 * near.suction, 1e-12, "suction in another scale");
 }
 
-static void test_exchange_of_bodies(void **state)
+TEST(exchange_of_bodies)
 {
-    (void)state;
     const struct bridge one = {{1, 0.2}, {0.1, 1.0}, 1, 1e-4};
     const struct bridge other = {{0.2, 1}, {1.0, 0.1}, 1, 1e-4};
     const struct bridge_state a = solved(&one, 0.02), b = solved(&other, 0.02);
@@ -195,9 +188,8 @@ static void test_exchange_of_bodies(void **state)
     close_to(a.half_filling_angle[0], b.half_filling_angle[1], 1e-11, "filling angle");
 }
 
-static void test_plane_is_a_large_sphere(void **state)
+TEST(plane_is_a_large_sphere)
 {
-    (void)state;
     const struct bridge plane = {{1, INFINITY}, {0.2, 0.5}, 1, 1e-3};
     const double force = solved(&plane, 0.05).force;
     for (double radius = 1e2; radius < 1e9; radius *= 1e2) {
@@ -206,9 +198,8 @@ static void test_plane_is_a_large_sphere(void **state)
     }
 }
 
-static void test_continuous_at_contact(void **state)
+TEST(continuous_at_contact)
 {
-    (void)state;
     const struct bridge bridge = {{1, 0.5}, {0.2, 0.2}, 1, 1e-3};
     const double force = solved(&bridge, 0).force;
     for (double gap = 1e-4; gap > 1e-13; gap *= 0.1) {
@@ -217,9 +208,8 @@ static void test_continuous_at_contact(void **state)
     }
 }
 
-static void test_ruptures_from_below(void **state)
+TEST(ruptures_from_below)
 {
-    (void)state;
     const struct bridge bridge = {{1, 0.5}, {0.2, 0.2}, 1, 1e-3};
     struct bridge_state widest, is;
     struct reason reason;
@@ -239,9 +229,8 @@ static void test_ruptures_from_below(void **state)
 
 // The whole range of volumes, angles and ratios: a stable bridge at contact, and a
 // rupture, everywhere.
-static void test_whole_range(void **state)
+TEST(whole_range)
 {
-    (void)state;
     static const double ratios[] = {1, 0.5, 0.01, 1e-4, 0};
     for (int r = 0; r < 5; r++)
         for (int degrees = 0; degrees <= 120; degrees += 15)
@@ -291,9 +280,8 @@ static void check_smooth(double ratio, int degrees, double volume)
     }
 }
 
-static void test_no_jump_to_other_branches(void **state)
+TEST(no_jump_to_other_branches)
 {
-    (void)state;
     static const double ratios[] = {1, 0.7, 0.3, 0.1, 0};
     for (int r = 0; r < 5; r++)
         for (int degrees = 0; degrees <= 120; degrees += 10)
@@ -303,9 +291,8 @@ static void test_no_jump_to_other_branches(void **state)
 
 // The gap of rupture grows smoothly with the volume: long strides along a branch do not
 // end on another one. These few of nearly equal radii once did.
-static void test_rupture_is_smooth_in_volume(void **state)
+TEST(rupture_is_smooth_in_volume)
 {
-    (void)state;
     const double e = 0.052734375;
     const struct bodies bodies = {{1 - e, 1 + e}, {0.2, 0.2}};
     double last = 0;
@@ -320,9 +307,8 @@ static void test_rupture_is_smooth_in_volume(void **state)
     }
 }
 
-static void test_no_bridge(void **state)
+TEST(no_bridge)
 {
-    (void)state;
     static const struct bridge none[] = {{{1, 0}, {0, 0}, 1, 1e-3},
                                          {{1, 1}, {0, 4}, 1, 1e-3},
                                          {{INFINITY, INFINITY}, {0, 0}, 1, 1e-3},
@@ -333,25 +319,4 @@ static void test_no_bridge(void **state)
         struct reason reason;
         assert_int_equal(bridge_solve(&none[k], 0, &is, &reason), STATUS_BAD_DATA);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_catenoid),
-        cmocka_unit_test(test_cylinder),
-        cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_vanishing_volume),
-        cmocka_unit_test(test_force_is_slope_of_energy),
-        cmocka_unit_test(test_scale_free),
-        cmocka_unit_test(test_exchange_of_bodies),
-        cmocka_unit_test(test_plane_is_a_large_sphere),
-        cmocka_unit_test(test_continuous_at_contact),
-        cmocka_unit_test(test_ruptures_from_below),
-        cmocka_unit_test(test_rupture_is_smooth_in_volume),
-        cmocka_unit_test(test_whole_range),
-        cmocka_unit_test(test_no_jump_to_other_branches),
-        cmocka_unit_test(test_no_bridge)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

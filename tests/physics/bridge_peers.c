@@ -59,9 +59,8 @@ static void close_to(double value, double reference, double tolerance, const cha
         fail_msg("%s: %.15g, not %.15g", what, value, reference);
 }
 
-static void test_exact_forces(void **state)
+TEST(exact_forces)
 {
-    (void)state;
     FILE *file = open_table("exact_selected.csv");
     char line[1024], name[8];
     int count = 0;
@@ -88,9 +87,8 @@ static void test_exact_forces(void **state)
     assert_true(count >= 70);
 }
 
-static void test_exact_ruptures(void **state)
+TEST(exact_ruptures)
 {
-    (void)state;
     FILE *file = open_table("exact_rupture.csv");
     char line[1024], name[8];
     int count = 0;
@@ -124,9 +122,8 @@ static int model_of(const char *name)
 }
 
 // All of Yade's forces where it still has a bridge.
-static void test_models_as_in_yade(void **state)
+TEST(models_as_in_yade)
 {
-    (void)state;
     FILE *file = open_table("yade_curves.csv");
     char line[256], name[8], model[8];
     int count[BRIDGE_MODELS] = {0};
@@ -154,13 +151,4 @@ static void test_models_as_in_yade(void **state)
     print_message("# furthest from Yade: %.1e\n", worst);
     for (int k = BRIDGE_WEIGERT; k < BRIDGE_MODELS; k++)
         assert_true(count[k] > 300);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_exact_forces),
-                                       cmocka_unit_test(test_exact_ruptures),
-                                       cmocka_unit_test(test_models_as_in_yade)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

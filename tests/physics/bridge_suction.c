@@ -39,9 +39,8 @@ static int compare(const struct bridge *given, double gap, double suction)
     return 1;
 }
 
-static void test_volume(void **state)
+TEST(volume)
 {
-    (void)state;
     static const double ratio[] = {1, 1.5, 5, 50}, angle[] = {0, 30, 60};
     static const double gap[] = {-0.1, -0.001, 0, 1e-4, 0.01, 0.05, 0.2};
     int found = 0, asked = 0;
@@ -74,9 +73,8 @@ static double largest_suction(struct bridge bridge, double separation)
     return largest;
 }
 
-static void test_end(void **state)
+TEST(end)
 {
-    (void)state;
     static const double gap[] = {0.003, 0.03, 0.2};
     for (int g = 0; g < 3; g++)
         for (double ratio = 1; ratio < 30; ratio *= 5)
@@ -95,12 +93,4 @@ static void test_end(void **state)
                     fail_msg("gap %g, radii 1:%g, %g degrees: %d %d", gap[g], ratio,
                              angle, below, beyond);
             }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_volume),
-                                       cmocka_unit_test(test_end)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -67,9 +67,8 @@ static void check_table(double other, double degrees, double tolerance)
     bridge_table_free(table);
 }
 
-static void test_error(void **state)
+TEST(error)
 {
-    (void)state;
     check_table(1, 0, 1e-5);
     check_table(1, 32, 1e-5); // where two ways to rupture meet
     check_table(1, 80, 1e-5); // and where symmetry breaks long before the gap turns
@@ -128,9 +127,8 @@ static void check_ratios(double largest, bool plane, double degrees, double leas
     bridge_ratios_free(ratios);
 }
 
-static void test_unequal_radii(void **state)
+TEST(unequal_radii)
 {
-    (void)state;
     check_ratios(20, false, 0, 0.05, 0.05, (double[]){1e-5, 1e-4, 1e-5});
     check_ratios(3, false, 20, 1e-3, 1e-2, (double[]){1e-5, 1e-4, 1e-5});
     check_ratios(2, false, 45, 0.01, 0.01, (double[]){1e-5, 1e-3, 1e-4});
@@ -139,9 +137,8 @@ static void test_unequal_radii(void **state)
 }
 
 // Equal grains have the numbers of their own table, whatever others there are.
-static void test_equal_among_unequal(void **state)
+TEST(equal_among_unequal)
 {
-    (void)state;
     const struct bridge_sizes one = {{1, 1}, {1e-3, 1e-2}, {0, 0}},
                               many = {{1, 1.01}, {1e-3, 1e-2}, {0, 0}};
     struct bridge_ratios *ratios[2];
@@ -169,9 +166,8 @@ static void test_equal_among_unequal(void **state)
 
 // Of volumes that are not tabulated, from the nearest that is: force and rupture beside
 // the exact ones.
-static void test_volumes_beyond(void **state)
+TEST(volumes_beyond)
 {
-    (void)state;
     const struct bridge_sizes sizes[2] = {{{1, 1.25}, {1e-10, 3e-9}, {0, 0}},
                                           {{1, 1.25}, {0.8, 2}, {0, 0}}};
     const double volume[] = {5e-10, 1e-10, 1.3, 2}, within[] = {0.03, 0.08, 0.15, 0.25};
@@ -200,9 +196,8 @@ static void test_volumes_beyond(void **state)
         bridge_ratios_free(both[k]);
 }
 
-static void test_many_forces_of_models(void **state)
+TEST(many_forces_of_models)
 {
-    (void)state;
     for (enum bridge_model model = BRIDGE_WEIGERT; model < BRIDGE_MODELS; model++) {
         const double volume[3] = {1e-6, 1e-4, 1e-2}, gap[3] = {0, 1e-3, 5e-2};
         double force[3];
@@ -213,15 +208,4 @@ static void test_many_forces_of_models(void **state)
             assert_true(fabs(force[k] - one) <= 1e-14 * one);
         }
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_error),
-                                       cmocka_unit_test(test_unequal_radii),
-                                       cmocka_unit_test(test_equal_among_unequal),
-                                       cmocka_unit_test(test_volumes_beyond),
-                                       cmocka_unit_test(test_many_forces_of_models)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

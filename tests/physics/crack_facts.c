@@ -52,9 +52,8 @@ static void assert_facts(const struct ensemble *study, int of)
     assert_true(isnan(study->statistics[of].value[FRONT_SATURATION]));
 }
 
-static void test_facts_and_sums_of_two_runs(void **state)
+TEST(facts_and_sums_of_two_runs)
 {
-    (void)state;
     struct run run = broken_columns();
     struct ensemble study = ensemble_init(2, classes, false);
     for (int k = 0; k < 2; k++) {
@@ -93,9 +92,8 @@ static void turn_over(struct run *run)
 }
 
 // Whether slices begin and end with layers or cut through them.
-static void test_profile_upside_down(void **state)
+TEST(profile_upside_down)
 {
-    (void)state;
     for (int n_slice = 1; n_slice <= 9; n_slice++) {
         const struct classes of = {.n_slice = n_slice, .n_interval = 2};
         struct run run = broken_columns();
@@ -113,9 +111,8 @@ static void test_profile_upside_down(void **state)
 }
 
 // Grains that left the box count at its ends.
-static void test_classes_end(void **state)
+TEST(classes_end)
 {
-    (void)state;
     static const double share[] = {-1, 0, 0.24, 0.25, 0.26, 1, 1.5};
     static const int class[] = {0, 0, 0, 0, 1, 3, 3};
     for (int k = 0; k < 7; k++)
@@ -161,9 +158,8 @@ static struct liquid column(void)
     return liquid;
 }
 
-static void test_slices_over_time(void **state)
+TEST(slices_over_time)
 {
-    (void)state;
     struct liquid liquid = column();
     // Twice the same time, and later than the last step.
     static const double time[] = {0, 0.25, 1.5, 1.5, 2, 3, 7};
@@ -188,9 +184,8 @@ static void test_slices_over_time(void **state)
 }
 
 // Cracks on the border of a slice that is emptying and of one that is dry.
-static void test_cracks_beside_their_liquid(void **state)
+TEST(cracks_beside_their_liquid)
 {
-    (void)state;
     struct liquid liquid = column();
     struct run run = lattice(1, 1, 4, false);
     crack(&run, bond_between(&run, 2, 3));
@@ -220,9 +215,8 @@ static void test_cracks_beside_their_liquid(void **state)
 }
 
 // Pearson's r of what left and what opened, where there ever was liquid.
-static void test_correlation_by_its_definition(void **state)
+TEST(correlation_by_its_definition)
 {
-    (void)state;
     enum { SLICES = 3, INTERVALS = 4, N = SLICES * INTERVALS, RUNS = 2 };
     const struct classes few = {.n_slice = SLICES, .n_interval = INTERVALS};
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
@@ -250,18 +244,4 @@ static void test_correlation_by_its_definition(void **state)
     static const double nothing[N];
     assert_true(isnan(front_correlation(first, slice, nothing, few)));
     gsl_rng_free(rng);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_facts_and_sums_of_two_runs),
-        cmocka_unit_test(test_classes_end),
-        cmocka_unit_test(test_profile_upside_down),
-        cmocka_unit_test(test_slices_over_time),
-        cmocka_unit_test(test_cracks_beside_their_liquid),
-        cmocka_unit_test(test_correlation_by_its_definition),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -22,9 +22,8 @@ static void assert_digits(double got, double wanted, double last_digit)
 static const double first_drug[] = {0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0, 2};
 static const double second_drug[] = {1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
 
-static void test_welch_on_student_sleep(void **state)
+TEST(welch_on_student_sleep)
 {
-    (void)state;
     const struct welch found = welch_test(SAMPLE(first_drug), SAMPLE(second_drug));
     assert_digits(found.t, -1.8608, 1e-4);
     assert_digits(found.degrees, 17.776, 1e-3);
@@ -33,9 +32,8 @@ static void test_welch_on_student_sleep(void **state)
 
 // The drugs were given to the same ten: t.test(..., paired = TRUE) and
 // wilcox.test(..., paired = TRUE). One slept as long with both.
-static void test_pairs_of_student_sleep(void **state)
+TEST(pairs_of_student_sleep)
 {
-    (void)state;
     const struct paired_t t = paired_t_test(SAMPLE(first_drug), SAMPLE(second_drug));
     assert_digits(t.mean, -1.58, 1e-2);
     assert_digits(t.t, -4.0621, 1e-4);
@@ -49,9 +47,8 @@ static void test_pairs_of_student_sleep(void **state)
 
 // Depression before and after a tranquiliser (Hollander and Wolfe 1973, p. 29), in R's
 // manual of wilcox.test: V = 40, p = 0.01953 one-sided, of 2^9 orders of signs 10.
-static void test_signed_ranks_of_depression(void **state)
+TEST(signed_ranks_of_depression)
 {
-    (void)state;
     static const double before[] = {1.83, 0.50, 1.62, 2.48, 1.68,
                                     1.88, 1.55, 3.06, 1.30};
     static const double after[] = {0.878, 0.647, 0.598, 2.05, 1.06,
@@ -64,9 +61,8 @@ static void test_signed_ranks_of_depression(void **state)
 }
 
 // All signs of n differences, one by one.
-static void test_signed_ranks_by_counting(void **state)
+TEST(signed_ranks_by_counting)
 {
-    (void)state;
     enum { N = 8 };
     double zero[N] = {0}, value[N];
     for (int signs = 0; signs < 1 << N; signs++) {
@@ -88,9 +84,8 @@ static void test_signed_ranks_by_counting(void **state)
     }
 }
 
-static void test_pairs_that_say_little(void **state)
+TEST(pairs_that_say_little)
 {
-    (void)state;
     static const double same[] = {3, 4, 5}, more[] = {4, 5, 6}, unknown[] = {1, NAN, 2};
     assert_within(paired_t_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
     assert_within(paired_t_test(SAMPLE(more), SAMPLE(same)).p, 0, 0);
@@ -102,27 +97,24 @@ static void test_pairs_that_say_little(void **state)
 }
 
 // With one degree of freedom Student's is Cauchy's.
-static void test_two_pairs(void **state)
+TEST(two_pairs)
 {
-    (void)state;
     static const double before[] = {5, 9}, after[] = {4, 6};
     const struct paired_t found = paired_t_test(SAMPLE(before), SAMPLE(after));
     assert_within(found.t, 2, 1e-15);
     assert_within(found.p, 1 - 2 * atan(2) / M_PI, 1e-14);
 }
 
-static void test_interval_of_student_sleep(void **state)
+TEST(interval_of_student_sleep)
 {
-    (void)state;
     const struct sample sample = SAMPLE(first_drug);
     const double half = half_width(sample, 0.95);
     assert_digits(sample_mean(sample) - half, -0.5297804, 1e-7);
     assert_digits(sample_mean(sample) + half, 2.0297804, 1e-7);
 }
 
-static void test_ranks_of_student_sleep_with_ties(void **state)
+TEST(ranks_of_student_sleep_with_ties)
 {
-    (void)state;
     const struct mann_whitney found =
         mann_whitney_test(SAMPLE(first_drug), SAMPLE(second_drug));
     assert_within(found.u, 25.5, 0);
@@ -132,9 +124,8 @@ static void test_ranks_of_student_sleep_with_ties(void **state)
 
 // Permeability of the human chorioamnion (Hollander and Wolfe 1973, p. 69); R gives
 // W = 35 and 0.1272 for one side.
-static void test_ranks_of_hollander_and_wolfe(void **state)
+TEST(ranks_of_hollander_and_wolfe)
 {
-    (void)state;
     static const double at_term[] = {0.80, 0.83, 1.89, 1.04, 1.45,
                                      1.38, 1.91, 1.64, 0.73, 1.46};
     static const double earlier[] = {1.15, 0.88, 0.90, 0.74, 1.21};
@@ -146,9 +137,8 @@ static void test_ranks_of_hollander_and_wolfe(void **state)
 }
 
 // Ages at diagnosis, in scipy's manual of mannwhitneyu: U = 17, p = 0.1111111111111111.
-static void test_ranks_of_the_manual_of_scipy(void **state)
+TEST(ranks_of_the_manual_of_scipy)
 {
-    (void)state;
     static const double males[] = {19, 22, 16, 29, 24}, females[] = {20, 11, 17, 12};
     const struct mann_whitney found = mann_whitney_test(SAMPLE(males), SAMPLE(females));
     assert_within(found.u, 17, 0);
@@ -156,9 +146,8 @@ static void test_ranks_of_the_manual_of_scipy(void **state)
 }
 
 // U of every choice of four ranks of nine, counted one by one.
-static void test_exact_ranks_by_counting(void **state)
+TEST(exact_ranks_by_counting)
 {
-    (void)state;
     enum { N = 9, FEW = 4 };
     int count[FEW * (N - FEW) + 1] = {0}, all = 0;
     for (unsigned chosen = 0; chosen < 1u << N; chosen++) {
@@ -186,9 +175,8 @@ static void test_exact_ranks_by_counting(void **state)
 }
 
 // Of even degrees the chance is a finite sum [Abramowitz and Stegun 26.7.4].
-static void test_student_in_closed_form(void **state)
+TEST(student_in_closed_form)
 {
-    (void)state;
     for (int degrees = 2; degrees <= 400; degrees += 2)
         for (double t = 0; t < 4; t += 0.37) {
             const double angle = atan(t / sqrt(degrees)), square = pow(cos(angle), 2);
@@ -201,9 +189,8 @@ static void test_student_in_closed_form(void **state)
 
 // Half the interval of 1, -1, 1 ...: Student's quantile over the root of n - 1. So many
 // digits of it by 30-digit arithmetic.
-static void test_interval_of_many(void **state)
+TEST(interval_of_many)
 {
-    (void)state;
     double value[42];
     for (int k = 0; k < 42; k++)
         value[k] = k % 2 ? -1 : 1;
@@ -213,9 +200,8 @@ static void test_interval_of_many(void **state)
     assert_within(few, tan(0.475 * M_PI), 1e-12);
 }
 
-static void test_what_tells_nothing(void **state)
+TEST(what_tells_nothing)
 {
-    (void)state;
     static const double one[] = {1}, same[] = {2, 2, 2}, more[] = {3, 3};
     static const double unknown[] = {1, NAN, 2};
     assert_true(isnan(welch_test(SAMPLE(unknown), SAMPLE(same)).p));
@@ -226,26 +212,4 @@ static void test_what_tells_nothing(void **state)
     assert_within(welch_test(SAMPLE(same), SAMPLE(more)).p, 0, 0);
     assert_true(welch_test(SAMPLE(same), SAMPLE(more)).t < -1e300);
     assert_within(mann_whitney_test(SAMPLE(same), SAMPLE(same)).p, 1, 0);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_welch_on_student_sleep),
-        cmocka_unit_test(test_pairs_of_student_sleep),
-        cmocka_unit_test(test_signed_ranks_of_depression),
-        cmocka_unit_test(test_signed_ranks_by_counting),
-        cmocka_unit_test(test_pairs_that_say_little),
-        cmocka_unit_test(test_two_pairs),
-        cmocka_unit_test(test_interval_of_student_sleep),
-        cmocka_unit_test(test_ranks_of_student_sleep_with_ties),
-        cmocka_unit_test(test_ranks_of_hollander_and_wolfe),
-        cmocka_unit_test(test_ranks_of_the_manual_of_scipy),
-        cmocka_unit_test(test_exact_ranks_by_counting),
-        cmocka_unit_test(test_student_in_closed_form),
-        cmocka_unit_test(test_interval_of_many),
-        cmocka_unit_test(test_what_tells_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -86,9 +86,8 @@ static void compare_with_brute_force(const struct run *run)
     free(wanted.size);
 }
 
-static void test_clusters_and_fragments_by_brute_force(void **state)
+TEST(clusters_and_fragments_by_brute_force)
 {
-    (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     for (int trial = 0; trial < 60; trial++) {
         struct run run = lattice(4, 3, 5, trial % 2);
@@ -112,9 +111,8 @@ static struct clusters clusters_of(const struct run *run)
 }
 
 // All bonds between the first two layers: spans both ways along them, not across.
-static void test_a_layer_of_cracks_spans_along_itself(void **state)
+TEST(a_layer_of_cracks_spans_along_itself)
 {
-    (void)state;
     struct run run = lattice(5, 4, 6, false);
     for (int i = 0; i < 20; i++)
         crack(&run, bond_between(&run, i, i + 20));
@@ -135,9 +133,8 @@ static void test_a_layer_of_cracks_spans_along_itself(void **state)
 }
 
 // A row of broken bonds through a box that repeats spans once it comes back to itself.
-static void test_cracks_that_lead_around_the_box(void **state)
+TEST(cracks_that_lead_around_the_box)
 {
-    (void)state;
     struct run run = lattice(5, 2, 2, true);
     for (int x = 0; x < 4; x++)
         crack(&run, bond_between(&run, x, x + 1));
@@ -176,9 +173,8 @@ static bool leads_around(const struct run *run, int i, int x, int *box, bool *se
     return around;
 }
 
-static void test_leading_around_by_walking(void **state)
+TEST(leading_around_by_walking)
 {
-    (void)state;
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     int n_around = 0;
     for (int trial = 0; trial < 200; trial++) {
@@ -223,9 +219,8 @@ static void displace(struct run *run, double times)
         run->displacement[i] = displaced(run->packing.position[i], times);
 }
 
-static void test_a_homogeneous_strain_is_found_again(void **state)
+TEST(a_homogeneous_strain_is_found_again)
 {
-    (void)state;
     struct run run = lattice(4, 3, 5, false);
     displace(&run, 1);
     const struct deformation found = body_deformation(&run, 0);
@@ -240,9 +235,8 @@ static void test_a_homogeneous_strain_is_found_again(void **state)
     run_free(&run);
 }
 
-static void test_small_strains_keep_their_digits(void **state)
+TEST(small_strains_keep_their_digits)
 {
-    (void)state;
     struct run run = lattice(4, 3, 5, false);
     displace(&run, 1e-9);
     for (int i = 0; i < run.packing.n_particle; i++) // the shift alone would drown them
@@ -255,9 +249,8 @@ static void test_small_strains_keep_their_digits(void **state)
 
 // Grains broken off do not count, however far they fly; in one layer the strain across
 // it is not known and 0.
-static void test_only_the_largest_fragment_counts(void **state)
+TEST(only_the_largest_fragment_counts)
 {
-    (void)state;
     struct run run = lattice(4, 1, 5, false);
     crack(&run, bond_between(&run, 0, 1));
     crack(&run, bond_between(&run, 0, 4));
@@ -271,9 +264,8 @@ static void test_only_the_largest_fragment_counts(void **state)
 }
 
 // As many unknowns as grains give.
-static void test_four_grains_have_one(void **state)
+TEST(four_grains_have_one)
 {
-    (void)state;
     struct run run = lattice(2, 2, 2, false);
     for (int b = 0; b < run.packing.n_bond; b++) {
         const int32_t *pair = run.packing.bond[b];
@@ -285,9 +277,8 @@ static void test_four_grains_have_one(void **state)
     run_free(&run);
 }
 
-static void test_three_grains_have_no_strain(void **state)
+TEST(three_grains_have_no_strain)
 {
-    (void)state;
     struct run run = lattice(3, 1, 1, false);
     displace(&run, 1);
     assert_true(isnan(body_deformation(&run, 0).shrinkage));
@@ -297,9 +288,8 @@ static void test_three_grains_have_no_strain(void **state)
 // The planes 4, 5, 0, 1 of six, whole across the side of the box: it shrinks as it
 // would within the box. A body around the box keeps its length, wherever the box
 // begins.
-static void test_fragments_across_a_side_are_whole(void **state)
+TEST(fragments_across_a_side_are_whole)
 {
-    (void)state;
     struct run run = lattice(6, 3, 5, true);
     for (int b = 0; b < run.packing.n_bond; b++) {
         const int32_t *pair = run.packing.bond[b];
@@ -334,9 +324,8 @@ static void test_fragments_across_a_side_are_whole(void **state)
 
 // ---- orientation --------------------------------------------------------------------
 
-static void test_upright_and_level_cracks(void **state)
+TEST(upright_and_level_cracks)
 {
-    (void)state;
     struct run run = lattice(3, 3, 3, false);
     crack(&run, bond_between(&run, 0, 9));
     crack(&run, bond_between(&run, 0, 1));
@@ -354,9 +343,8 @@ static void test_upright_and_level_cracks(void **state)
 
 // The fabric of one crack is n n, however long the bond and from whichever end; a bond
 // down is as steep as one up.
-static void test_oblique_cracks(void **state)
+TEST(oblique_cracks)
 {
-    (void)state;
     for (int up = -1; up <= 1; up += 2) {
         struct run run = lattice(2, 1, 1, false);
         run.packing.position[1] =
@@ -375,24 +363,4 @@ static void test_oblique_cracks(void **state)
         assert_within(found.fabric[MODE_NORMAL][8], n[2] * n[2], 1e-15);
         run_free(&run);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clusters_and_fragments_by_brute_force),
-        cmocka_unit_test(test_a_layer_of_cracks_spans_along_itself),
-        cmocka_unit_test(test_cracks_that_lead_around_the_box),
-        cmocka_unit_test(test_leading_around_by_walking),
-        cmocka_unit_test(test_a_homogeneous_strain_is_found_again),
-        cmocka_unit_test(test_small_strains_keep_their_digits),
-        cmocka_unit_test(test_only_the_largest_fragment_counts),
-        cmocka_unit_test(test_four_grains_have_one),
-        cmocka_unit_test(test_three_grains_have_no_strain),
-        cmocka_unit_test(test_fragments_across_a_side_are_whole),
-        cmocka_unit_test(test_upright_and_level_cracks),
-        cmocka_unit_test(test_oblique_cracks),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

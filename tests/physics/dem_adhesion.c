@@ -105,9 +105,8 @@ static double press_and_draw(struct dem_setup setup, const struct jkr *is, int m
     return most;
 }
 
-static void test_follows_the_closed_form(void **state)
+TEST(follows_the_closed_form)
 {
-    (void)state;
     const double of_one = MODULUS / (1 - POISSON * POISSON);
     for (int unequal = 0; unequal < 2; unequal++) {
         const double other = unequal ? 3 * GRAIN : GRAIN;
@@ -129,9 +128,8 @@ static void test_follows_the_closed_form(void **state)
 
 // A grain at rest on a plane without weight: the radius of the contact follows from its
 // overlap, a^2 / (3 R). Under a pull it holds up to 3/2 pi w R.
-static void test_holds_up_to_the_pull_off_force(void **state)
+TEST(holds_up_to_the_pull_off_force)
 {
-    (void)state;
     const double modulus = MODULUS / (1 - POISSON * POISSON);
     struct packing packing = two_grains(1, GRAIN, 0);
     struct dem_setup setup = sticky(&packing);
@@ -164,9 +162,8 @@ static void test_holds_up_to_the_pull_off_force(void **state)
 
 // Without dashpots a contact takes 7.09 (w^5 R^4 / E^2)^(1/3): what it gave when it
 // formed less what it takes until it breaks.
-static void test_energy_of_an_impact(void **state)
+TEST(energy_of_an_impact)
 {
-    (void)state;
     const double radius = 0.5 * GRAIN;
     const double modulus = 0.5 * MODULUS / (1 - POISSON * POISSON);
     const double taken =
@@ -204,9 +201,8 @@ static void refuses(struct dem_setup setup)
     assert_null(dem);
 }
 
-static void test_refuses_what_it_cannot(void **state)
+TEST(refuses_what_it_cannot)
 {
-    (void)state;
     struct packing packing = two_grains(2, GRAIN, GRAIN);
     struct dem_setup setup = sticky(&packing);
     setup.adhesion = -1;
@@ -221,15 +217,4 @@ static void test_refuses_what_it_cannot(void **state)
     setup.liquid = &liquid;
     refuses(setup);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_follows_the_closed_form),
-        cmocka_unit_test(test_holds_up_to_the_pull_off_force),
-        cmocka_unit_test(test_energy_of_an_impact),
-        cmocka_unit_test(test_refuses_what_it_cannot)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

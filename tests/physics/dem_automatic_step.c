@@ -41,9 +41,8 @@ static double closed_form(const struct dem_setup *setup, bool closed)
     return 4 / (dashpots + sqrt(dashpots * dashpots + 4 * springs));
 }
 
-static void chains(void **state)
+TEST(chains)
 {
-    (void)state;
     for (int k = 0; k < 8; k++) {
         const bool closed = k & 4;
         struct packing packing = chain(closed ? 8 : 2, closed);
@@ -62,9 +61,8 @@ static void chains(void **state)
 
 // Pressed together, so that no contact opens: inside the limit a shake stays, past it
 // it explodes.
-static void at_the_limit(void **state)
+TEST(at_the_limit)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         struct packing packing = chain(8, true);
         struct dem_setup setup = automatic(&packing);
@@ -148,9 +146,8 @@ static void goes_on_to_the_same_bytes(struct dem *dem, const struct dem_setup *s
 
 // Bonds break, what breaks off scatters, contacts close that were far apart: whatever
 // happens is stable, and what moves comes to less.
-static void scenes_that_change(void **state)
+TEST(scenes_that_change)
 {
-    (void)state;
     for (int k = 0; k < 6; k++) {
         struct packing packing = cluster(120, k & 1);
         struct dem_setup setup = automatic(&packing);
@@ -178,13 +175,4 @@ static void scenes_that_change(void **state)
         dem_free(dem);
         packing_free(&packing);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(chains),
-                                       cmocka_unit_test(at_the_limit),
-                                       cmocka_unit_test(scenes_that_change)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

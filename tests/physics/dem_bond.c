@@ -50,9 +50,8 @@ static void raise_force(struct dem *dem, struct vector load, int steps)
     }
 }
 
-static void test_tension_stiffness(void **state)
+TEST(tension_stiffness)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = soft_setup(&packing);
     setup.fixed = first_fixed;
@@ -68,9 +67,8 @@ static void test_tension_stiffness(void **state)
 }
 
 // In compression the contact helps: half a grain's stiffness beside the bond's.
-static void test_compression_stiffness(void **state)
+TEST(compression_stiffness)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = soft_setup(&packing);
     setup.fixed = first_fixed;
@@ -83,9 +81,8 @@ static void test_compression_stiffness(void **state)
     packing_free(&packing);
 }
 
-static void test_shear_stiffness(void **state)
+TEST(shear_stiffness)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = soft_setup(&packing);
     setup.fixed = first_fixed;
@@ -136,26 +133,23 @@ static void assert_breaks_at(struct vector breaking, double normal_strength,
     assert_close(crack.position.x, 2 * RADIUS, 1e-3);
 }
 
-static void test_breaks_in_tension(void **state)
+TEST(breaks_in_tension)
 {
-    (void)state;
     const double strength = 1.6e4;
     assert_breaks_at((struct vector){strength * bond_area(), 0, 0}, strength, strength,
                      DEM_CRACK_NORMAL);
 }
 
-static void test_breaks_in_shear(void **state)
+TEST(breaks_in_shear)
 {
-    (void)state;
     const double strength = 1.6e4;
     assert_breaks_at((struct vector){0, strength * bond_area(), 0}, INFINITY, strength,
                      DEM_CRACK_SHEAR);
 }
 
 // F r bends: sigma = F r R / I, which the shear strength does not see.
-static void test_breaks_in_bending(void **state)
+TEST(breaks_in_bending)
 {
-    (void)state;
     const double strength = 1.6e4;
     const double load = strength * bending_inertia() / (RADIUS * bond_radius());
     assert_breaks_at((struct vector){0, load, 0}, strength, strength, DEM_CRACK_NORMAL);
@@ -218,26 +212,23 @@ static void assert_rocks(struct vector first, struct vector second, int axis,
     }
 }
 
-static void test_bending(void **state)
+TEST(bending)
 {
-    (void)state;
     assert_rocks((struct vector){0, -1, 0}, (struct vector){0, 1, 0}, 1,
                  8e14 * bending_inertia(), bending_inertia() / bond_radius(),
                  DEM_CRACK_NORMAL);
 }
 
-static void test_twist(void **state)
+TEST(twist)
 {
-    (void)state;
     const double polar = 2 * bending_inertia(); // J
     assert_rocks((struct vector){-1, 0, 0}, (struct vector){1, 0, 0}, 0, 5e14 * polar,
                  polar / bond_radius(), DEM_CRACK_SHEAR);
 }
 
 // Both limits passed in one step: the mode further past its strength.
-static void test_larger_ratio_names_the_mode(void **state)
+TEST(larger_ratio_names_the_mode)
 {
-    (void)state;
     int n_crack;
     const struct vector across = {1e-9, 1e-9, 0};
     struct dem_crack crack = pull_to(across, 1, 0, 1e-30, &n_crack);
@@ -250,9 +241,8 @@ static void test_larger_ratio_names_the_mode(void **state)
 
 // A bond that breaks does nothing in the cycle in which it does [K 4.43]: grains that
 // fly apart and turn go on as they were.
-static void test_what_breaks_pulls_no_more(void **state)
+TEST(what_breaks_pulls_no_more)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     setup.material.damping_ratio = 0;
@@ -282,9 +272,8 @@ static void test_what_breaks_pulls_no_more(void **state)
 
 // K 4.41 and 4.42 ask for a stress of at least the strength: without strength a bond
 // breaks at rest.
-static void test_no_strength_at_all(void **state)
+TEST(no_strength_at_all)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     for (int kind = 0; kind < 2; kind++)
         for (int mode = 0; mode < 2; mode++) {
@@ -305,9 +294,8 @@ static void test_no_strength_at_all(void **state)
 
 // Pairs far from each other, swept together, each loaded its own way: one moves as it
 // does alone, whatever breaks beside it.
-static void test_pairs_do_not_know_each_other(void **state)
+TEST(pairs_do_not_know_each_other)
 {
-    (void)state;
     enum { PAIRS = 11 };
     struct packing alone = bonded_pair(), all = new_packing(2 * PAIRS, PAIRS);
     for (int p = 0; p < PAIRS; p++)
@@ -352,24 +340,4 @@ static void test_pairs_do_not_know_each_other(void **state)
     }
     packing_free(&all);
     packing_free(&alone);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tension_stiffness),
-        cmocka_unit_test(test_compression_stiffness),
-        cmocka_unit_test(test_shear_stiffness),
-        cmocka_unit_test(test_breaks_in_tension),
-        cmocka_unit_test(test_breaks_in_shear),
-        cmocka_unit_test(test_breaks_in_bending),
-        cmocka_unit_test(test_bending),
-        cmocka_unit_test(test_twist),
-        cmocka_unit_test(test_larger_ratio_names_the_mode),
-        cmocka_unit_test(test_what_breaks_pulls_no_more),
-        cmocka_unit_test(test_no_strength_at_all),
-        cmocka_unit_test(test_pairs_do_not_know_each_other),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -305,60 +305,42 @@ static void check_twisting_frequency(void)
     assert_close(measured, rod, 1e-3);
 }
 
-static void test_end_load(void **state)
+TEST(end_load)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         shear_stiffness = shear_stiffnesses[k];
         check_end_load();
     }
 }
 
-static void test_end_moment(void **state)
+TEST(end_moment)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         shear_stiffness = shear_stiffnesses[k];
         check_end_moment();
     }
 }
 
-static void test_axial_load(void **state)
+TEST(axial_load)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         shear_stiffness = shear_stiffnesses[k];
         check_axial_load();
     }
 }
 
-static void test_bending_frequency(void **state)
+TEST(bending_frequency)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         shear_stiffness = shear_stiffnesses[k];
         check_bending_frequency();
     }
 }
 
-static void test_twisting_frequency(void **state)
+TEST(twisting_frequency)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         shear_stiffness = shear_stiffnesses[k];
         check_twisting_frequency();
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_end_load),
-        cmocka_unit_test(test_end_moment),
-        cmocka_unit_test(test_axial_load),
-        cmocka_unit_test(test_bending_frequency),
-        cmocka_unit_test(test_twisting_frequency),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

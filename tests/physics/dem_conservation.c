@@ -5,9 +5,8 @@
 
 static const double speed = 1e-2; // m/s
 
-static void test_momentum(void **state)
+TEST(momentum)
 {
-    (void)state;
     struct packing packing = cubic_lattice(4, 4, 4, false);
     keeps_momentum(stiff_setup(&packing), speed);
     packing_free(&packing);
@@ -39,9 +38,8 @@ static double energy_error(double safety)
     return worst / (first.kinetic + first.elastic);
 }
 
-static void test_energy_is_second_order(void **state)
+TEST(energy_is_second_order)
 {
-    (void)state;
     const double coarse = energy_error(0.02), fine = energy_error(0.01);
     const double finest = energy_error(0.005);
     assert_true(coarse < 2e-2);
@@ -52,9 +50,8 @@ static void test_energy_is_second_order(void **state)
 }
 
 // With dashpots energy only falls.
-static void test_dashpots_take_energy(void **state)
+TEST(dashpots_take_energy)
 {
-    (void)state;
     struct packing packing = cubic_lattice(3, 3, 3, false);
     struct dem_setup setup = stiff_setup(&packing);
     struct dem *dem = shaken(&setup, speed, 7);
@@ -71,9 +68,8 @@ static void test_dashpots_take_energy(void **state)
 }
 
 // With the inertia of the mean grain all fall by their own weight.
-static void test_density_scaling(void **state)
+TEST(density_scaling)
 {
-    (void)state;
     struct packing packing = new_packing(3, 0);
     double mean = 0;
     for (int i = 0; i < 3; i++) {
@@ -94,16 +90,4 @@ static void test_density_scaling(void **state)
                      -9.81 * pow(i + 1, 3) / mean * 100 * dem_time_step(dem), 1e-12);
     dem_free(dem);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_momentum),
-        cmocka_unit_test(test_energy_is_second_order),
-        cmocka_unit_test(test_dashpots_take_energy),
-        cmocka_unit_test(test_density_scaling),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,9 +20,8 @@ static struct vector rotated(struct vector axis, double angle, struct vector x)
 
 // Two bodies about an oblique axis, one of which is told to turn back on the way: no
 // drift after twenty turns and a hundred thousand steps.
-static void test_places_in_closed_form(void **state)
+TEST(places_in_closed_form)
 {
-    (void)state;
     enum { N = 40 };
     struct vector *position = random_vectors(N, 5 * GRAIN, 3);
     uint8_t of[N];
@@ -80,9 +79,8 @@ static void test_places_in_closed_form(void **state)
 
 // A sun that turns, a planet that rolls between it and a ring at rest: with radii a and
 // R the planet's centre goes at half the speed of the sun's surface.
-static void test_planet_rolls(void **state)
+TEST(planet_rolls)
 {
-    (void)state;
     const double a = 3 * GRAIN, squeeze = 1e-5 * GRAIN, rate = 5;
     const struct vector position[2] = {{0, 0, 0}, {a + GRAIN - squeeze, 0, 0}};
     const struct dem_wall ring = {.shape = DEM_SPHERE,
@@ -142,9 +140,8 @@ static double bat(double safety, double part, bool turning)
     return fabs(now.kinetic + now.elastic - now.gained) / whole;
 }
 
-static void test_work_of_a_bat(void **state)
+TEST(work_of_a_bat)
 {
-    (void)state;
     for (int turning = 0; turning < 2; turning++) {
         bat(0.01, 1.2, turning);
         for (int k = 0; k < 3; k++) {
@@ -245,9 +242,8 @@ static double books_of_mixer(double safety, struct dem_energy *end)
     return fabs(there - began.kinetic - began.elastic - work) / work;
 }
 
-static void test_books_of_a_mixer(void **state)
+TEST(books_of_a_mixer)
 {
-    (void)state;
     struct dem_energy end;
     const double coarse = books_of_mixer(0.04, &end), fine = books_of_mixer(0.01, &end);
     if (!(fine < 3e-3 && fine < 0.4 * coarse)) // dashpots are of first order
@@ -317,9 +313,8 @@ static void assert_is_balanced(const struct mixer *mixer, const struct dem *dem,
 }
 
 // Newton's third law, at thirty moments.
-static void test_force_and_moment(void **state)
+TEST(force_and_moment)
 {
-    (void)state;
     struct mixer mixer;
     set_mixer(&mixer, true);
     mixer.scene.setup.gravity = (struct vector){0, 0, 0};
@@ -348,9 +343,8 @@ static void test_force_and_moment(void **state)
 // ---- members ------------------------------------------------------------------------
 
 // Overlapping grains of one group do not push each other, and weigh nothing.
-static void test_members_are_glued(void **state)
+TEST(members_are_glued)
 {
-    (void)state;
     const struct vector position[3] = {{0, 0, 0}, {GRAIN, 0, 0}, {0, 0, 3 * GRAIN}};
     const struct dem_group group = {.velocity = {0, 0, 0}};
     const uint8_t of[3] = {1, 1, 0};
@@ -376,9 +370,8 @@ static void test_members_are_glued(void **state)
 
 // A fixed grain and a group that slides past it, beside bonded grains far away, which
 // let the engine leave out pairs that do nothing: this one has a shear spring.
-static void test_drags_on_a_fixed_grain(void **state)
+TEST(drags_on_a_fixed_grain)
 {
-    (void)state;
     enum { N = 10 };
     const double squeeze = 1e-3 * GRAIN, way = 1e-5 * GRAIN;
     struct vector position[N] = {{0, 0, 0}, {2 * GRAIN - squeeze, 0, 0}};
@@ -414,9 +407,8 @@ static void test_drags_on_a_fixed_grain(void **state)
     packing_free(&scene.packing);
 }
 
-static void test_refuses_what_it_cannot(void **state)
+TEST(refuses_what_it_cannot)
 {
-    (void)state;
     const struct vector position[2] = {{0, 0, 0}, {2 * GRAIN, 0, 0}};
     struct dem_group group = {.velocity = {0, 0, 0}};
     const uint8_t of[2] = {1, 0}, beyond[2] = {0, 2}, fixed[2] = {1, 0};
@@ -446,18 +438,4 @@ static void test_refuses_what_it_cannot(void **state)
     assert_non_null(strstr(reason.text, "diverged"));
     dem_free(dem);
     packing_free(&scene.packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_places_in_closed_form),
-                                       cmocka_unit_test(test_planet_rolls),
-                                       cmocka_unit_test(test_work_of_a_bat),
-                                       cmocka_unit_test(test_books_of_a_mixer),
-                                       cmocka_unit_test(test_force_and_moment),
-                                       cmocka_unit_test(test_members_are_glued),
-                                       cmocka_unit_test(test_drags_on_a_fixed_grain),
-                                       cmocka_unit_test(test_refuses_what_it_cannot)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -92,9 +92,8 @@ static struct dem_setup rubbing_setup(enum dem_law law)
                               .threads = 1};
 }
 
-static void test_books_of_each_law(void **state)
+TEST(books_of_each_law)
 {
-    (void)state;
     assert_books_close(rubbing_setup(DEM_LINEAR), 2e-3);
     assert_books_close(rubbing_setup(DEM_TIMED), 2e-3);
     assert_books_close(rubbing_setup(DEM_HERTZ), 2e-3);
@@ -104,9 +103,8 @@ static void test_books_of_each_law(void **state)
 }
 
 // Dashpots that do not pull take less. A bond's still do: bonded grains move as before.
-static void test_books_without_tensile_damping(void **state)
+TEST(books_without_tensile_damping)
 {
-    (void)state;
     struct dem_setup setup = rubbing_setup(DEM_LINEAR);
     setup.no_tensile_damping = true;
     assert_books_close(setup, 2e-3);
@@ -125,9 +123,8 @@ static void test_books_without_tensile_damping(void **state)
     packing_free(&packing);
 }
 
-static void test_books_of_local_damping(void **state)
+TEST(books_of_local_damping)
 {
-    (void)state;
     struct dem_setup setup = rubbing_setup(DEM_LINEAR);
     setup.material.local_damping = 0.3;
     struct dem_energy end;
@@ -165,9 +162,8 @@ static double strained_box(struct dem_setup setup, double safety,
     return missing;
 }
 
-static void test_books_of_a_strained_box(void **state)
+TEST(books_of_a_strained_box)
 {
-    (void)state;
     for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
         struct dem_energy end;
         const struct dem_setup setup = rubbing_setup((enum dem_law)law);
@@ -180,9 +176,8 @@ static void test_books_of_a_strained_box(void **state)
 }
 
 // Springs and dashpots against rolling, between grains and at walls.
-static void test_books_of_rolling(void **state)
+TEST(books_of_rolling)
 {
-    (void)state;
     for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
         struct dem_setup setup = rubbing_setup((enum dem_law)law);
         setup.material.rolling_friction = 0.2;
@@ -230,26 +225,11 @@ static double torn_apart(enum dem_bond_kind kind, double safety)
     return missing;
 }
 
-static void test_books_of_broken_bonds(void **state)
+TEST(books_of_broken_bonds)
 {
-    (void)state;
     for (int kind = 0; kind < 2; kind++) {
         const double coarse = torn_apart(kind, 0.004), fine = torn_apart(kind, 0.001);
         if (!(fine < 1e-3 && fine < 0.5 * coarse))
             fail_msg("kind %d missing: %g, and %g in longer steps", kind, fine, coarse);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_books_of_each_law),
-        cmocka_unit_test(test_books_without_tensile_damping),
-        cmocka_unit_test(test_books_of_local_damping),
-        cmocka_unit_test(test_books_of_a_strained_box),
-        cmocka_unit_test(test_books_of_rolling),
-        cmocka_unit_test(test_books_of_broken_bonds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

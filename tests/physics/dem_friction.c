@@ -48,9 +48,8 @@ static struct slide slide_plate(double pushing, bool walls)
     return slide;
 }
 
-static void test_plate_sticks(void **state)
+TEST(plate_sticks)
 {
-    (void)state;
     const struct slide slide = slide_plate(0.9, true);
     assert_true(fabs(slide.velocity) < 1e-12);
     // The floor gives way by F/k_s, and the grains roll on it against their bonds.
@@ -58,9 +57,8 @@ static void test_plate_sticks(void **state)
     assert_true(slide.displacement < 1e-4 * RADIUS);
 }
 
-static void test_plate_slides(void **state)
+TEST(plate_slides)
 {
-    (void)state;
     const double pushing = 1.5;
     const struct slide slide = slide_plate(pushing, true);
     const double mass = 3230 * 4.0 / 3 * M_PI * pow(RADIUS, 3);
@@ -70,9 +68,8 @@ static void test_plate_slides(void **state)
 
 // What the contact cannot carry, the bond does: (H - mu N) / (k^s A) of shear, and
 // H r^2 / (k^n I) of bending. Soft contacts, as rolling is damped through shear only.
-static void test_contact_slips_beside_a_bond(void **state)
+TEST(contact_slips_beside_a_bond)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     const uint8_t fixed[2] = {1, 0};
@@ -101,9 +98,8 @@ static void test_contact_slips_beside_a_bond(void **state)
 
 // A bonded plate on a held one, pressed and pushed over it: every contact between the
 // two carries mu F^n across once they slide, and none ever more.
-static void test_plates_slide_at_the_limit(void **state)
+TEST(plates_slide_at_the_limit)
 {
-    (void)state;
     struct packing packing = cubic_lattice(3, 3, 2, false);
     int n_bond = 0;
     for (int b = 0; b < packing.n_bond; b++)
@@ -136,16 +132,4 @@ static void test_plates_slide_at_the_limit(void **state)
     }
     dem_free(dem);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_plate_sticks),
-        cmocka_unit_test(test_plate_slides),
-        cmocka_unit_test(test_contact_slips_beside_a_bond),
-        cmocka_unit_test(test_plates_slide_at_the_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static const double contrast = 1e6;
 
 // Soft and stiff, pressed together at the ends: every contact carries the force, and
 // overlaps as the two springs in series say [K 4.22].
-static void test_contrast_at_rest(void **state)
+TEST(contrast_at_rest)
 {
-    (void)state;
     enum { N = 6 };
     struct packing packing = row_of_grains(N, 1, 0);
     const uint8_t material_of[N] = {0, 0, 1, 1, 0, 1};
@@ -101,9 +100,8 @@ static void meet(enum dem_law law, double restitution)
     packing_free(&packing);
 }
 
-static void test_contrast_in_impact(void **state)
+TEST(contrast_in_impact)
 {
-    (void)state;
     meet(DEM_LINEAR, 1);
     meet(DEM_HERTZ, 1);
     meet(DEM_HERTZ, 0.5);
@@ -210,9 +208,8 @@ static double shoot(double safety)
     return (energy.kinetic + energy.elastic + energy.dashpots + energy.slip) / all - 1;
 }
 
-static void test_fast_grain(void **state)
+TEST(fast_grain)
 {
-    (void)state;
     const double coarse = shoot(0.1), fine = shoot(0.05);
     if (!(fabs(coarse) < 0.02 && fabs(coarse / fine - 2) < 0.25))
         fail_msg("books off by %g and %g", coarse, fine);
@@ -221,9 +218,8 @@ static void test_fast_grain(void **state)
 // ---- too long a step ----------------------------------------------------------------
 
 // Faster than a tenth of a radius in a step: stopped and said, whatever the contacts.
-static void test_too_fast_for_the_step(void **state)
+TEST(too_fast_for_the_step)
 {
-    (void)state;
     struct packing packing = shot_scene();
     struct dem_wall wall[5];
     shot_walls(&packing, wall);
@@ -265,9 +261,8 @@ static enum status spin_small_grain(double share, struct reason *reason)
 
 // It is its own surface that counts, not how far one of the largest would turn; and a
 // step that is stable is not called unstable.
-static void test_small_grain_turns(void **state)
+TEST(small_grain_turns)
 {
-    (void)state;
     struct reason reason = {""};
     assert_int_equal(spin_small_grain(0.0999, &reason), STATUS_OK);
     assert_int_equal(spin_small_grain(0.1001, &reason), STATUS_NOT_CONVERGED);
@@ -277,9 +272,8 @@ static void test_small_grain_turns(void **state)
 
 // Two, ten and a thousand times the limit: refused with the limit named; forced, it
 // runs on or says that it diverged, and no number is ever anything but finite.
-static void test_past_the_limit(void **state)
+TEST(past_the_limit)
 {
-    (void)state;
     struct packing packing = shot_scene();
     struct dem_wall wall[5];
     shot_walls(&packing, wall);
@@ -314,18 +308,4 @@ static void test_past_the_limit(void **state)
     }
     assert_int_equal(diverged, 2); // far past it there is no other way
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_contrast_at_rest),
-        cmocka_unit_test(test_contrast_in_impact),
-        cmocka_unit_test(test_fast_grain),
-        cmocka_unit_test(test_too_fast_for_the_step),
-        cmocka_unit_test(test_small_grain_turns),
-        cmocka_unit_test(test_past_the_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

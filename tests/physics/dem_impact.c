@@ -40,9 +40,8 @@ static void check_elastic(struct impact is, const double published[3])
     assert_true(got.largest_pull == 0);
 }
 
-static void test_1_equal_spheres(void **state)
+TEST(1_equal_spheres)
 {
-    (void)state;
     struct impact is = {.material = glass,
                         .radius = {0.01, 0.01},
                         .velocity = {{0, 0, -10}, {0, 0, 10}}};
@@ -51,9 +50,8 @@ static void test_1_equal_spheres(void **state)
     check_elastic(is, (const double[]){7108, 368.30e-6, 54.20e-6});
 }
 
-static void test_2_sphere_on_plane(void **state)
+TEST(2_sphere_on_plane)
 {
-    (void)state;
     struct impact is = {
         .material = aluminium, .radius = {0.1, 0}, .velocity = {{0, 0, -0.2}}};
     check_elastic(is, (const double[]){11370, 49.72e-6, 0.7317e-3});
@@ -67,9 +65,8 @@ static void test_2_sphere_on_plane(void **state)
 
 // Whatever the speed. The contact has to pull at its end: a dashpot that may not, gives
 // more than was asked for.
-static void test_3_restitution(void **state)
+TEST(3_restitution)
 {
-    (void)state;
     const struct dem_material *material[2] = {&oxide, &cast_iron};
     for (int k = 0; k < 2; k++)
         for (int tenths = 2; tenths <= 10; tenths++)
@@ -85,9 +82,8 @@ static void test_3_restitution(void **state)
 }
 
 // Timed contacts give restitution and time as asked, between any two grains.
-static void test_timed_contact(void **state)
+TEST(timed_contact)
 {
-    (void)state;
     const double radius[3][2] = {{1e-3, 0}, {1e-3, 1e-3}, {1e-3, 7e-3}};
     for (int k = 0; k < 3; k++)
         for (int tenths = 2; tenths <= 10; tenths++) {
@@ -109,9 +105,8 @@ static void test_timed_contact(void **state)
 // Without a pull the contact ends where its force does: with decay b = zeta w0 and w^2
 // = w0^2 - b^2 at the time (pi - atan2(2 b w, w^2 - b^2))/w, when the speed is e =
 // exp(-b t) of that before (Schwager & Poeschel 2007, Granular Matter 9, 465).
-static void test_dashpots_that_do_not_pull(void **state)
+TEST(dashpots_that_do_not_pull)
 {
-    (void)state;
     const double radius[3][2] = {{1e-3, 0}, {1e-3, 1e-3}, {1e-3, 7e-3}};
     for (int k = 0; k < 3; k++)
         for (int tenths = 2; tenths <= 10; tenths++) {
@@ -136,9 +131,8 @@ static void test_dashpots_that_do_not_pull(void **state)
 }
 
 // e = exp(-pi zeta / sqrt(1 - zeta^2)), t = pi sqrt(m / (k (1 - zeta^2))).
-static void test_linear_contact(void **state)
+TEST(linear_contact)
 {
-    (void)state;
     for (double ratio = 0; ratio < 0.75; ratio += 0.1) {
         struct impact is = {.law = DEM_LINEAR,
                             .material = {.density = 2500,
@@ -192,9 +186,8 @@ static void assert_slides(const struct impact *is, const struct outcome *got)
 
 // From 35 degrees the sphere slides; Chung & Ooi's curves, read from their figures 6 to
 // 8 to within half a per cent of the scale, are those of a no-slip law as ours is.
-static void test_4_oblique_impact(void **state)
+TEST(4_oblique_impact)
 {
-    (void)state;
     const double published[][3] = {// degrees, tangential restitution, rad/s
                                    {35, 0.737, 582}, {40, 0.781, 545},
                                    {50, 0.845, 457}, {60, 0.893, 357},
@@ -217,9 +210,8 @@ static void test_4_oblique_impact(void **state)
 
 // At one normal velocity, with rebounds over mu. Elastic spheres with partial slip, as
 // in the finite elements of Wu et al. (2003), rebound otherwise as long as they stick.
-static void test_5_varying_tangential_velocity(void **state)
+TEST(5_varying_tangential_velocity)
 {
-    (void)state;
     for (double psi = 0.25; psi < 13; psi *= 1.25) {
         struct impact is = {.material = steel,
                             .radius = {1e-5, 0},
@@ -237,9 +229,8 @@ static void test_5_varying_tangential_velocity(void **state)
 
 // Of elastic spheres: sticks as a whole at first below psi = 1/kappa, and slides
 // throughout from 7 - 1/kappa on (Maw, Barber & Fawcett 1976: psi_1 = 1, 4 chi - 1).
-static void test_partial_slip_limits(void **state)
+TEST(partial_slip_limits)
 {
-    (void)state;
     const double kappa = 2 * 0.7 / 1.7;
     const double last = 7 - 1 / kappa;
     WITHIN(partial_slip_rebound(1.01 * last, 0.3), 1.01 * last - 7, 2e-3);
@@ -252,9 +243,8 @@ static void test_partial_slip_limits(void **state)
 }
 
 // Onto a plane without tangential velocity, but with spin.
-static void test_6_spin(void **state)
+TEST(6_spin)
 {
-    (void)state;
     for (double angle = 5; angle < 90; angle += 5) {
         const double across = 0.2 * tan(angle * M_PI / 180);
         struct impact is = {.material = alloy,
@@ -272,9 +262,8 @@ static void test_6_spin(void **state)
 
 // Two spheres that spin against each other roll like cog-wheels: nothing slides, and
 // nothing changes but the normal velocity.
-static void test_7_opposite_spins(void **state)
+TEST(7_opposite_spins)
 {
-    (void)state;
     for (double angle = 5; angle < 90; angle += 20) {
         const double spin = 2 * tan(angle * M_PI / 180);
         struct impact is = {.material = alloy,
@@ -293,9 +282,8 @@ static void test_7_opposite_spins(void **state)
 // A spinning sphere onto one of five times the radius, at rest: a thousand times
 // denser and stiffer, and then of the same stuff. Any two solid spheres that slide
 // change the speed between their surfaces by 7/2 mu (1 + e) v_n.
-static void test_8_unequal_spheres(void **state)
+TEST(8_unequal_spheres)
 {
-    (void)state;
     for (int same = 0; same < 2; same++)
         for (double angle = 65; angle < 90; angle += 5) {
             const double across = 0.2 * tan(angle * M_PI / 180);
@@ -319,9 +307,8 @@ static void test_8_unequal_spheres(void **state)
 
 // A sphere of ten thousand times the radius is a plane of the same material: what pairs
 // do is what walls do.
-static void test_sphere_as_plane(void **state)
+TEST(sphere_as_plane)
 {
-    (void)state;
     for (double psi = 0.5; psi < 9; psi *= 1.5) {
         struct impact plane = {.material = steel,
                                .radius = {1e-3, 0},
@@ -342,9 +329,8 @@ static void test_sphere_as_plane(void **state)
 // 3.8.0 (pair_style and fix wall/gran `gran model hertz tangential history`, steps of
 // 1e-7 s). At tangents around 2 slip and grip alternate from step to step, and the
 // shear dashpot with them, so that there the law by itself says no single number.
-static void test_friction_that_feels_the_dashpot(void **state)
+TEST(friction_that_feels_the_dashpot)
 {
-    (void)state;
     const double liggghts[][2] = {{3.811, 0.81542}, {6, 0.88285}};
     for (double tangent = 0.1; tangent < 12; tangent *= 1.4) {
         struct impact is = {.material = alloy,
@@ -367,26 +353,4 @@ static void test_friction_that_feels_the_dashpot(void **state)
                             .velocity = {{across, 0, -0.2}}};
         WITHIN(run_hertz(&is).velocity[0].x / across, liggghts[k][1], 0.0015);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_1_equal_spheres),
-        cmocka_unit_test(test_2_sphere_on_plane),
-        cmocka_unit_test(test_3_restitution),
-        cmocka_unit_test(test_4_oblique_impact),
-        cmocka_unit_test(test_5_varying_tangential_velocity),
-        cmocka_unit_test(test_6_spin),
-        cmocka_unit_test(test_7_opposite_spins),
-        cmocka_unit_test(test_8_unequal_spheres),
-        cmocka_unit_test(test_sphere_as_plane),
-        cmocka_unit_test(test_friction_that_feels_the_dashpot),
-        cmocka_unit_test(test_partial_slip_limits),
-        cmocka_unit_test(test_timed_contact),
-        cmocka_unit_test(test_dashpots_that_do_not_pull),
-        cmocka_unit_test(test_linear_contact),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

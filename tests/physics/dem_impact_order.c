@@ -67,9 +67,8 @@ static void check_inside(const struct impact *is, double time, double exact,
 }
 
 // U = v/w exp(-g t) sin(w t), with w t = pi/4.
-static void test_linear_inside(void **state)
+TEST(linear_inside)
 {
-    (void)state;
     for (int damped = 0; damped < 2; damped++) {
         const double ratio = damped ? 0.2 : 0, time = spring_time(ratio);
         const struct impact is = spring_impact(ratio);
@@ -80,9 +79,8 @@ static void test_linear_inside(void **state)
 }
 
 // Undamped: with a dashpot two errors of opposite sign hide the order for long.
-static void test_hertz_inside(void **state)
+TEST(hertz_inside)
 {
-    (void)state;
     const struct impact is = hertz_impact(1, 0, 0);
     const double time = hertz_time(&is);
     check_inside(&is, time, quarter_overlap(is, time, 200000), 2);
@@ -115,9 +113,8 @@ static void check_rebound(const struct impact *is, double time, struct vector ex
         fail_msg("errors %g, %g: order %g, wanted %g", coarse, fine, mean, order);
 }
 
-static void test_linear_rebound(void **state)
+TEST(linear_rebound)
 {
-    (void)state;
     struct impact is = spring_impact(0);
     check_rebound(&is, spring_time(0), (struct vector){0, 0, 0.1}, 2, 0.05);
     is = spring_impact(0.2);
@@ -125,9 +122,8 @@ static void test_linear_rebound(void **state)
     check_rebound(&is, spring_time(0.2), (struct vector){0, 0, 0.1 * left}, 1, 0.1);
 }
 
-static void test_timed_rebound(void **state)
+TEST(timed_rebound)
 {
-    (void)state;
     struct impact is = spring_impact(0);
     is.law = DEM_TIMED;
     is.material.contact_time = 1e-4;
@@ -137,18 +133,16 @@ static void test_timed_rebound(void **state)
     check_rebound(&is, 1e-4, (struct vector){0, 0, 0.06}, 1, 0.1);
 }
 
-static void test_hertz_rebound(void **state)
+TEST(hertz_rebound)
 {
-    (void)state;
     struct impact is = hertz_impact(1, 0, 0);
     check_rebound(&is, hertz_time(&is), (struct vector){0, 0, 0.5}, 2.5, 0.15);
     is = hertz_impact(0.7, 0, 0);
     check_rebound(&is, hertz_time(&is), (struct vector){0, 0, 0.35}, 1, 0.15);
 }
 
-static void test_oblique_rebound(void **state)
+TEST(oblique_rebound)
 {
-    (void)state;
     const struct impact is = hertz_impact(1, 0.075, 0.3); // sticks but at its end
     const struct outcome exact = integrate_law(&is);
     check_rebound(&is, hertz_time(&is), exact.velocity[0], 1, 0.1);
@@ -188,9 +182,8 @@ static void assert_keeps_energy(struct dem *dem, double within)
 enum { ROW = 8 };
 
 // Contact bonds, all along the row: a chain of springs.
-static void test_linear_chain_keeps_energy(void **state)
+TEST(linear_chain_keeps_energy)
 {
-    (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     struct dem_setup setup = stiff_setup(&packing);
     setup.material.damping_ratio = 0;
@@ -207,9 +200,8 @@ static void test_linear_chain_keeps_energy(void **state)
 }
 
 // Parallel bonds: the row bends, twists and shears.
-static void test_bonded_chain_keeps_energy(void **state)
+TEST(bonded_chain_keeps_energy)
 {
-    (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
     struct dem_setup setup = stiff_setup(&packing);
@@ -228,9 +220,8 @@ static void test_bonded_chain_keeps_energy(void **state)
 }
 
 // A row between two grains that are held, pressed so that no contact ever opens.
-static void test_hertz_row_keeps_energy(void **state)
+TEST(hertz_row_keeps_energy)
 {
-    (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     packing.n_bond = 0;
     for (int i = 0; i < ROW; i++)
@@ -282,27 +273,8 @@ static void assert_bounces(enum dem_law law, double within)
     assert_keeps_energy(dem, within);
 }
 
-static void test_bouncing(void **state)
+TEST(bouncing)
 {
-    (void)state;
     assert_bounces(DEM_LINEAR, 2e-3);
     assert_bounces(DEM_HERTZ, 6e-4);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_linear_inside),
-        cmocka_unit_test(test_hertz_inside),
-        cmocka_unit_test(test_linear_rebound),
-        cmocka_unit_test(test_timed_rebound),
-        cmocka_unit_test(test_hertz_rebound),
-        cmocka_unit_test(test_oblique_rebound),
-        cmocka_unit_test(test_linear_chain_keeps_energy),
-        cmocka_unit_test(test_bonded_chain_keeps_energy),
-        cmocka_unit_test(test_hertz_row_keeps_energy),
-        cmocka_unit_test(test_bouncing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

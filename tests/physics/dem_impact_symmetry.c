@@ -112,9 +112,8 @@ static void assert_same(const struct rotation *turn, const int *number,
 
 static const enum dem_law laws[3] = {DEM_LINEAR, DEM_TIMED, DEM_HERTZ};
 
-static void test_rotation(void **state)
+TEST(rotation)
 {
-    (void)state;
     const struct vector x = {2.0 / 7, 3.0 / 7, 6.0 / 7},
                         y = {6.0 / 7, 2.0 / 7, -3.0 / 7};
     const struct rotation turn = {{x, y, cross(x, y)}};
@@ -136,9 +135,8 @@ static void test_rotation(void **state)
 }
 
 // Many pairs come to be the other way round.
-static void test_numbering(void **state)
+TEST(numbering)
 {
-    (void)state;
     const struct rotation none = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     int number[GRAINS];
     struct scene scene = some_scene(), renumbered;
@@ -156,14 +154,4 @@ static void test_numbering(void **state)
         dem_free(dem[0]);
         dem_free(dem[1]);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rotation),
-        cmocka_unit_test(test_numbering),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

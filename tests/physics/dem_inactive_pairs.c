@@ -72,9 +72,8 @@ static struct dem_setup weak_setup(const struct packing *packing, uint8_t *fixed
     return setup;
 }
 
-static void equal_grains(void **state)
+TEST(equal_grains)
 {
-    (void)state;
     struct packing packing = cubic_lattice(5, 5, 8, false);
     uint8_t fixed[5 * 5 * 8];
     const struct dem_setup setup = weak_setup(&packing, fixed);
@@ -82,9 +81,8 @@ static void equal_grains(void **state)
     packing_free(&packing);
 }
 
-static void unequal_grains_in_a_periodic_box(void **state)
+TEST(unequal_grains_in_a_periodic_box)
 {
-    (void)state;
     struct packing packing = cubic_lattice(5, 5, 8, true);
     for (int i = 0; i < packing.n_particle; i++)
         packing.radius[i] *= 1 - 0.01 * (i % 7);
@@ -93,14 +91,4 @@ static void unequal_grains_in_a_periodic_box(void **state)
     setup.threads = 2;
     check(&setup);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(equal_grains),
-        cmocka_unit_test(unequal_grains_in_a_periodic_box),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

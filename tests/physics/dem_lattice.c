@@ -32,9 +32,8 @@ static double modulus(double stress, double *pair_stiffness, bool periodic)
     return stress / strain;
 }
 
-static void test_compression(void **state)
+TEST(compression)
 {
-    (void)state;
     double pair;
     const double e = modulus(-1e4, &pair, true);
     assert_close(e, pair / (2 * RADIUS), 1e-8);
@@ -42,17 +41,15 @@ static void test_compression(void **state)
     assert_close(e, 3e4 / (4 * RADIUS), 4e-3);
 }
 
-static void test_tension(void **state)
+TEST(tension)
 {
-    (void)state;
     double pair;
     const double e = modulus(1e3, &pair, true);
     assert_close(e, pair / (2 * RADIUS), 1e-5); // strain 1e-5 turns no normal
 }
 
-static void test_free_sides_make_no_difference(void **state)
+TEST(free_sides_make_no_difference)
 {
-    (void)state;
     double pair;
     const double e = modulus(-1e4, &pair, false);
     assert_close(e, pair / (2 * RADIUS), 1e-8);
@@ -61,9 +58,8 @@ static void test_free_sides_make_no_difference(void **state)
 // Contact bonds of strength F hold a pull of F/(4R^2) [K 4.46]. Each increment is
 // followed by as much again, as a load that comes at once may stretch what it pulls
 // twice as far.
-static void test_strength(void **state)
+TEST(strength)
 {
-    (void)state;
     const double strength = 1e-6;
     struct packing packing = cubic_lattice(side, side, height, true);
     struct dem_setup setup = stiff_setup(&packing);
@@ -100,9 +96,8 @@ static void test_strength(void **state)
 }
 
 // As many pairs as the lattice has bonds: diagonals are further than the skin.
-static void test_pairs_of_the_lattice(void **state)
+TEST(pairs_of_the_lattice)
 {
-    (void)state;
     struct packing packing = cubic_lattice(5, 5, 10, false);
     assert_int_equal(packing.n_bond, 625);
     struct dem_setup setup = stiff_setup(&packing);
@@ -122,17 +117,4 @@ static void test_pairs_of_the_lattice(void **state)
     free(contact);
     dem_free(dem);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_compression),
-        cmocka_unit_test(test_tension),
-        cmocka_unit_test(test_free_sides_make_no_difference),
-        cmocka_unit_test(test_strength),
-        cmocka_unit_test(test_pairs_of_the_lattice),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,9 +97,8 @@ static void pull_apart(enum bridge_model model, double other_radius)
     packing_free(&packing);
 }
 
-static void test_pulls_as_the_models_until_rupture(void **state)
+TEST(pulls_as_the_models_until_rupture)
 {
-    (void)state;
     for (int model = BRIDGE_WEIGERT; model < BRIDGE_MODELS; model++)
         pull_apart((enum bridge_model)model, 0.5 * RADIUS);
     pull_apart(BRIDGE_TABLE, RADIUS);
@@ -108,9 +107,8 @@ static void test_pulls_as_the_models_until_rupture(void **state)
 }
 
 // At rest the contact carries what the bridge pulls with at a = 0, if it pulls there.
-static void test_presses_grains_together(void **state)
+TEST(presses_grains_together)
 {
-    (void)state;
     const double radius[2] = {RADIUS, RADIUS};
     struct packing packing = row_of(2, radius);
     for (int pulls = 0; pulls < 2; pulls++) {
@@ -143,9 +141,8 @@ static void volumes_of(const struct dem *dem, double volume[2])
     free(bridge);
 }
 
-static void test_shares_its_liquid(void **state)
+TEST(shares_its_liquid)
 {
-    (void)state;
     const double radius[3] = {RADIUS, 0.8 * RADIUS, RADIUS};
     struct packing packing = row_of(3, radius);
     struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
@@ -219,9 +216,8 @@ static void assert_same(const struct dem *a, const struct dem *b)
     free(y);
 }
 
-static void test_same_bytes_whoever_computes(void **state)
+TEST(same_bytes_whoever_computes)
 {
-    (void)state;
     struct packing packing = wet_grains();
     struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_REDUCED);
     liquid.shared = liquid.wets_walls = true;
@@ -257,9 +253,8 @@ static double norm_of_momentum(const struct dem *dem, double *all)
 }
 
 // Momentum stays; energy is in the books, the better the shorter the steps.
-static void test_conserves(void **state)
+TEST(conserves)
 {
-    (void)state;
     struct packing packing = wet_grains();
     const struct dem_liquid liquid = some_liquid(BRIDGE_RABINOVICH);
     double missing[2];
@@ -289,9 +284,8 @@ static void test_conserves(void **state)
 // What contacts list is all that grains do to each other: it adds up to the net force
 // on each, and its virial, sum of x F, is the stress [Clausius]. Where each was when
 // these forces acted: a time step ago.
-static void test_stress_and_contacts_hold_bridges(void **state)
+TEST(stress_and_contacts_hold_bridges)
 {
-    (void)state;
     struct packing packing = wet_grains();
     packing.periodic[0] = false;
     const struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
@@ -348,9 +342,8 @@ static void test_stress_and_contacts_hold_bridges(void **state)
 // ---- boxes that are strained --------------------------------------------------------
 
 // The gap of a strained bridge is that of the places, its force that of the gap.
-static void test_strained_bridge(void **state)
+TEST(strained_bridge)
 {
-    (void)state;
     const double radius[2] = {RADIUS, RADIUS};
     struct packing packing = row_of(2, radius);
     packing.upper.x *= 3;
@@ -392,9 +385,8 @@ static double books_of_strained_box(double safety, struct dem_energy *now)
            now->gained;
 }
 
-static void test_books_of_a_strained_box(void **state)
+TEST(books_of_a_strained_box)
 {
-    (void)state;
     struct dem_energy now;
     const double coarse = books_of_strained_box(0.02, &now);
     const double fine = books_of_strained_box(0.005, &now);
@@ -448,9 +440,8 @@ static void pull_off(enum bridge_model model, struct dem_wall wall,
     packing_free(&packing);
 }
 
-static void test_pulls_at_planes_until_rupture(void **state)
+TEST(pulls_at_planes_until_rupture)
 {
-    (void)state;
     const struct dem_wall plane = {.normal = {1, 0, 0}};
     const struct bridge bridge = {
         {RADIUS, INFINITY}, {0.2, 0.2}, 0.07, some_liquid(BRIDGE_TABLE).volume};
@@ -461,9 +452,8 @@ static void test_pulls_at_planes_until_rupture(void **state)
 
 // What liquid.c says of a sphere of ten radii: here the volume is 1.7e-4 of the
 // effective radius cubed. The approximations know no other reduction.
-static void test_pulls_at_spheres(void **state)
+TEST(pulls_at_spheres)
 {
-    (void)state;
     const struct dem_wall beside = {.shape = DEM_SPHERE,
                                     .point = {-10 * RADIUS, RADIUS, RADIUS},
                                     .radius = 10 * RADIUS,
@@ -478,9 +468,8 @@ static void test_pulls_at_spheres(void **state)
 // h between curved surfaces, an ellipse of area 2 pi h / sqrt(kappa_1 kappa_2), under
 // the suction 2 gamma cos(theta) / h: so Willett's reduced formula pulls at contact,
 // and the grain at rest is pressed into the wall by as much.
-static void test_presses_grains_to_round_walls(void **state)
+TEST(presses_grains_to_round_walls)
 {
-    (void)state;
     const double a = RADIUS, b = 3 * RADIUS;
     const struct {
         enum dem_wall_shape shape;
@@ -520,9 +509,8 @@ static void test_presses_grains_to_round_walls(void **state)
 }
 
 // A grain on a floor, beside another: it divides its own liquid, the floor has none.
-static void test_shares_its_liquid_with_walls(void **state)
+TEST(shares_its_liquid_with_walls)
 {
-    (void)state;
     const double radius[2] = {RADIUS, RADIUS};
     struct packing packing = row_of(2, radius);
     struct dem_liquid liquid = some_liquid(BRIDGE_WILLETT_FULL);
@@ -594,9 +582,8 @@ static double books_at_walls(double safety)
     return fabs(now.kinetic + now.elastic + now.dashpots + now.bridges - began) / began;
 }
 
-static void test_books_at_wet_walls(void **state)
+TEST(books_at_wet_walls)
 {
-    (void)state;
     const double coarse = books_at_walls(0.02), fine = books_at_walls(0.005);
     if (!(fine < 0.01 && fine < 0.3 * coarse)) // of first order
         fail_msg("missing %g, in longer steps %g", fine, coarse);
@@ -605,9 +592,8 @@ static void test_books_at_wet_walls(void **state)
 // ---- the rest -----------------------------------------------------------------------
 
 // The same from nm to km.
-static void test_is_scale_free(void **state)
+TEST(is_scale_free)
 {
-    (void)state;
     struct vector moved[2];
     for (int large = 0; large < 2; large++) {
         const double scale = large ? 4e12 : 4e-2; // 1e6 m or 1e-8 m
@@ -633,9 +619,8 @@ static void refuses(const struct packing *packing, struct dem_liquid liquid,
     assert_refused(loose_setup(packing, &liquid), why);
 }
 
-static void test_refuses_what_it_cannot(void **state)
+TEST(refuses_what_it_cannot)
 {
-    (void)state;
     const double radius[2] = {RADIUS, 0.5 * RADIUS};
     struct packing packing = row_of(2, radius);
     refuses(&packing, some_liquid(BRIDGE_EXACT), "too slow");
@@ -657,26 +642,4 @@ static void test_refuses_what_it_cannot(void **state)
     assert_int_equal(dem_create(&dem, &setup, &reason), STATUS_BAD_DATA);
     assert_non_null(strstr(reason.text, "wider than the largest grain"));
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pulls_as_the_models_until_rupture),
-        cmocka_unit_test(test_presses_grains_together),
-        cmocka_unit_test(test_shares_its_liquid),
-        cmocka_unit_test(test_same_bytes_whoever_computes),
-        cmocka_unit_test(test_conserves),
-        cmocka_unit_test(test_stress_and_contacts_hold_bridges),
-        cmocka_unit_test(test_strained_bridge),
-        cmocka_unit_test(test_books_of_a_strained_box),
-        cmocka_unit_test(test_pulls_at_planes_until_rupture),
-        cmocka_unit_test(test_pulls_at_spheres),
-        cmocka_unit_test(test_presses_grains_to_round_walls),
-        cmocka_unit_test(test_shares_its_liquid_with_walls),
-        cmocka_unit_test(test_books_at_wet_walls),
-        cmocka_unit_test(test_is_scale_free),
-        cmocka_unit_test(test_refuses_what_it_cannot)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

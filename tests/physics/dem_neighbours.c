@@ -72,9 +72,8 @@ static int touching(const struct dem *dem)
     return n;
 }
 
-static void test_no_contact_is_missed(void **state)
+TEST(no_contact_is_missed)
 {
-    (void)state;
     const uint8_t periodic[3][3] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 1}};
     for (int k = 0; k < 3; k++) {
         struct packing packing = gas(periodic[k]);
@@ -92,9 +91,8 @@ static void test_no_contact_is_missed(void **state)
     }
 }
 
-static void test_another_search_changes_nothing(void **state)
+TEST(another_search_changes_nothing)
 {
-    (void)state;
     const uint8_t periodic[3] = {1, 1, 0};
     struct packing packing = gas(periodic);
     struct dem *rare = flying(&packing), *often = flying(&packing);
@@ -111,14 +109,4 @@ static void test_another_search_changes_nothing(void **state)
     dem_free(rare);
     dem_free(often);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_contact_is_missed),
-        cmocka_unit_test(test_another_search_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

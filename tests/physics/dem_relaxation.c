@@ -32,9 +32,8 @@ static double closed_form(const struct dem_material *material)
     return 4 / (dashpots + sqrt(dashpots * dashpots + 4 * springs));
 }
 
-static void step_of_two_grains(void **state)
+TEST(step_of_two_grains)
 {
-    (void)state;
     for (int k = 0; k < 8; k++) {
         struct packing packing = two_grains();
         struct dem_setup setup = stiff_setup(&packing);
@@ -54,9 +53,8 @@ static void step_of_two_grains(void **state)
 }
 
 // Time goes on from one step to the next.
-static void clock_across_steps(void **state)
+TEST(clock_across_steps)
 {
-    (void)state;
     struct packing packing = two_grains();
     struct dem_setup setup = stiff_setup(&packing);
     struct dem *dem = create(&setup);
@@ -73,9 +71,8 @@ static void clock_across_steps(void **state)
 
 // In one step a surface moves by 0.04 mean radii at most, at its speed or the one
 // given.
-static void step_of_a_flight(void **state)
+TEST(step_of_a_flight)
 {
-    (void)state;
     struct packing packing = new_packing(1, 0);
     packing.position[0] = (struct vector){10 * RADIUS, 10 * RADIUS, 10 * RADIUS};
     packing.upper = (struct vector){20 * RADIUS, 20 * RADIUS, 20 * RADIUS};
@@ -107,9 +104,8 @@ static void fall_once(struct dem *dem, const double expected[N])
         assert_close(velocity[i].z / (-9.81 * dem_time_step(dem)), expected[i], 1e-12);
 }
 
-static void free_fall(void **state)
+TEST(free_fall)
 {
-    (void)state;
     struct packing packing = new_packing(N, 0);
     double mass[N], sum = 0, heavy = 0;
     for (int i = 0; i < N; i++) {
@@ -146,9 +142,8 @@ static void free_fall(void **state)
 
 // Three grains in a row along x, between neighbours that do not slide: the middle one
 // sways against both by 2 * 2 k/m, an end by 2 k/m, two alone by 2 k/m.
-static void steps_of_a_row(void **state)
+TEST(steps_of_a_row)
 {
-    (void)state;
     struct packing packing = new_packing(3, 0);
     for (int i = 0; i < 3; i++)
         packing.position[i].x = 1.999 * RADIUS * i;
@@ -185,14 +180,4 @@ static void steps_of_a_row(void **state)
         dem_free(dem);
     }
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(step_of_two_grains), cmocka_unit_test(clock_across_steps),
-        cmocka_unit_test(step_of_a_flight), cmocka_unit_test(free_fall),
-        cmocka_unit_test(steps_of_a_row)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,9 +23,8 @@ static double furthest(const struct dem *dem)
     return most;
 }
 
-static void test_nothing_moves(void **state)
+TEST(nothing_moves)
 {
-    (void)state;
     struct packing packing = squeezed_lattice(3, 3, 3);
     const struct dem_wall floor = {.point = {0, 0, 0}, .normal = {0, 0, 1}};
     struct dem_setup setup = stiff_setup(&packing);
@@ -51,9 +50,8 @@ static void test_nothing_moves(void **state)
 }
 
 // As a row of touching grains: pushed by F the last moves by (N-1) F / (k^n A + K/2).
-static void test_a_row_is_a_row_of_springs(void **state)
+TEST(a_row_is_a_row_of_springs)
 {
-    (void)state;
     enum { N = 5 };
     struct packing packing = squeezed_lattice(N, 1, 1);
     const uint8_t fixed[N] = {1};
@@ -89,9 +87,8 @@ static void test_a_row_is_a_row_of_springs(void **state)
 
 // Arms that add up to the distance, though not to the radii less the overlap that
 // pushes: the torques of each pair cancel.
-static void test_momentum(void **state)
+TEST(momentum)
 {
-    (void)state;
     struct packing packing = squeezed_lattice(4, 4, 4);
     for (int i = 0; i < packing.n_particle; i++)
         packing.radius[i] *= 1 + 1e-3 * (i % 3);
@@ -99,15 +96,4 @@ static void test_momentum(void **state)
     setup.unstressed = true;
     keeps_momentum(setup, 1e-2);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nothing_moves),
-        cmocka_unit_test(test_a_row_is_a_row_of_springs),
-        cmocka_unit_test(test_momentum),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

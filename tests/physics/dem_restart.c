@@ -161,9 +161,8 @@ static void pull(struct dem *dem, int half)
     assert_in_range(n_crack, 1, dem->n_bond - 1); // or the scene tests nothing
 }
 
-static void bonded_lattice(void **state)
+TEST(bonded_lattice)
 {
-    (void)state;
     struct packing packing = cubic_lattice(6, 6, 8, false);
     struct dem_setup setup = stiff_setup(&packing);
     setup.bond.normal_strength = setup.bond.shear_strength = 3e3;
@@ -177,9 +176,8 @@ static void bonded_lattice(void **state)
     packing_free(&packing);
 }
 
-static void contact_bonds(void **state)
+TEST(contact_bonds)
 {
-    (void)state;
     struct packing packing = cubic_lattice(6, 6, 8, true);
     struct dem_setup setup = stiff_setup(&packing);
     setup.bond.kind = DEM_CONTACT_BOND;
@@ -238,9 +236,8 @@ static void shake(struct dem *dem, int half)
     assert_true(dem->search_cycle > 0); // pairs were sought again
 }
 
-static void walled_cloud(void **state)
+TEST(walled_cloud)
 {
-    (void)state;
     struct packing packing = cloud(8, 0.4, false);
     const struct vector up = packing.upper, middle = scale(0.5, up);
     const struct dem_wall wall[] = {
@@ -270,9 +267,8 @@ static void fly(struct dem *dem, int half)
     run(dem, half ? 500 : 300);
 }
 
-static void hertz_cloud(void **state)
+TEST(hertz_cloud)
 {
-    (void)state;
     struct packing packing = cloud(8, 0.4, true);
     struct dem_setup setup = stiff_setup(&packing);
     setup.law = DEM_HERTZ;
@@ -286,9 +282,8 @@ static void hertz_cloud(void **state)
 }
 
 // Grains of three sizes that resist rolling, in a belt.
-static void rolling_cloud(void **state)
+TEST(rolling_cloud)
 {
-    (void)state;
     struct packing packing = cloud(8, 0.4, false);
     const struct vector up = packing.upper, middle = scale(0.5, up);
     const struct dem_wall belt = {.point = middle,
@@ -314,9 +309,8 @@ static void rolling_cloud(void **state)
 }
 
 // Dry grains that adhere to each other and to a belt.
-static void adhesive_cloud(void **state)
+TEST(adhesive_cloud)
 {
-    (void)state;
     struct packing packing = cloud(8, 0.4, false);
     const struct vector up = packing.upper;
     const struct dem_wall belt = {.point = scale(0.5, up),
@@ -337,9 +331,8 @@ static void adhesive_cloud(void **state)
     packing_free(&packing);
 }
 
-static void two_timed_materials(void **state)
+TEST(two_timed_materials)
 {
-    (void)state;
     struct packing packing = cloud(8, 0.3, true);
     struct dem_setup setup = stiff_setup(&packing);
     setup.law = DEM_TIMED;
@@ -369,9 +362,8 @@ static void crowd(struct dem *dem, int half)
     if (half == 0) dem->searches_in_order = 64;            // as after many searches
 }
 
-static void renumbered_crowd(void **state)
+TEST(renumbered_crowd)
 {
-    (void)state;
     struct packing packing = cloud(18, 0.3, true);
     assert_true(packing.n_particle > 5000);
     struct dem_setup setup = stiff_setup(&packing);
@@ -390,9 +382,8 @@ static void squeeze(struct dem *dem, int half)
     }
 }
 
-static void squeezed_crowd(void **state)
+TEST(squeezed_crowd)
 {
-    (void)state;
     for (int spread = 0; spread < 2; spread++) {
         struct packing packing = cloud(18, 0.3 * spread, true);
         struct dem_setup setup = stiff_setup(&packing);
@@ -428,9 +419,8 @@ static void stir(struct dem *dem, int half)
         assert_true(norm(dem_group_state(dem, g).moment) > 0);
 }
 
-static void stirred_crowd(void **state)
+TEST(stirred_crowd)
 {
-    (void)state;
     struct packing packing = cloud(17, 0.3, true);
     free(packing.bond);
     packing.bond = neighbour_pairs(&packing, 0.12, &packing.n_bond);
@@ -464,9 +454,8 @@ static void stirred_crowd(void **state)
     packing_free(&packing);
 }
 
-static void no_grains(void **state)
+TEST(no_grains)
 {
-    (void)state;
     struct packing packing = new_packing(0, 0);
     packing.upper = (struct vector){1, 1, 1};
     struct dem_setup setup = stiff_setup(&packing);
@@ -491,9 +480,8 @@ static enum status try_restore(const struct dem_setup *setup,
 }
 
 // One number of one array at a time becomes what it cannot be.
-static void damaged_arrays(void **state)
+TEST(damaged_arrays)
 {
-    (void)state;
     struct packing packing = cubic_lattice(4, 4, 4, false);
     const struct dem_wall floor = {.normal = {0, 0, 1}};
     struct dem_setup setup = stiff_setup(&packing);
@@ -539,9 +527,8 @@ static void damaged_arrays(void **state)
 }
 
 // Any bit of any integer array: refused, or run without a crash.
-static void flipped_bits(void **state)
+TEST(flipped_bits)
 {
-    (void)state;
     struct packing packing = cubic_lattice(3, 3, 3, false);
     const struct dem_wall floor = {.normal = {0, 0, 1}};
     struct dem_setup setup = stiff_setup(&packing);
@@ -569,9 +556,8 @@ static void flipped_bits(void **state)
     packing_free(&packing);
 }
 
-static void another_scene(void **state)
+TEST(another_scene)
 {
-    (void)state;
     struct packing packing = cubic_lattice(3, 3, 3, false);
     struct packing other = cubic_lattice(3, 3, 4, false);
     struct dem_setup setup = stiff_setup(&packing), larger = stiff_setup(&other);
@@ -583,18 +569,4 @@ static void another_scene(void **state)
     dem_free(dem);
     packing_free(&packing);
     packing_free(&other);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bonded_lattice),      cmocka_unit_test(contact_bonds),
-        cmocka_unit_test(walled_cloud),        cmocka_unit_test(hertz_cloud),
-        cmocka_unit_test(rolling_cloud),       cmocka_unit_test(adhesive_cloud),
-        cmocka_unit_test(two_timed_materials), cmocka_unit_test(renumbered_crowd),
-        cmocka_unit_test(squeezed_crowd),      cmocka_unit_test(stirred_crowd),
-        cmocka_unit_test(no_grains),           cmocka_unit_test(damaged_arrays),
-        cmocka_unit_test(flipped_bits),        cmocka_unit_test(another_scene)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,9 +78,8 @@ static void rolls_to_rest(double large, double damping)
     packing_free(&scene.packing);
 }
 
-static void test_rolls_to_rest(void **state)
+TEST(rolls_to_rest)
 {
-    (void)state;
     rolls_to_rest(0, 0);
     rolls_to_rest(0, 0.3);
     rolls_to_rest(1e3, 0); // another kernel: on a fixed grain that is nearly a plane
@@ -89,9 +88,8 @@ static void test_rolls_to_rest(void **state)
 
 // A slope of tan less than mu_r holds the grain; on a steeper one it rolls down with
 // 5/7 of what is left of gravity.
-static void test_slope(void **state)
+TEST(slope)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         const double slope = k ? 0.15 : 0.05, time = 0.2;
         struct scene scene;
@@ -155,9 +153,8 @@ static void turn_against(enum dem_law law, bool alone)
     packing_free(&scene.packing);
 }
 
-static void test_turn_against_each_other(void **state)
+TEST(turn_against_each_other)
 {
-    (void)state;
     for (int law = DEM_LINEAR; law <= DEM_HERTZ; law++) {
         turn_against((enum dem_law)law, true);
         turn_against((enum dem_law)law, false);
@@ -165,9 +162,8 @@ static void test_turn_against_each_other(void **state)
 }
 
 // Nothing resists grains that turn about the line between them.
-static void test_twist_is_free(void **state)
+TEST(twist_is_free)
 {
-    (void)state;
     const struct vector position[2] = {{0, 0, 0}, {0, 0, 1.99 * GRAIN}};
     struct scene scene;
     set_scene(&scene, 2, position, 0, NULL);
@@ -208,9 +204,8 @@ static struct dem *cloud(struct scene *scene, enum dem_law law, bool two)
 }
 
 // Moments are opposite: a cloud keeps both momenta.
-static void test_keeps_momentum(void **state)
+TEST(keeps_momentum)
 {
-    (void)state;
     for (int k = 0; k < 6; k++) {
         struct scene scene;
         struct dem *dem = cloud(&scene, (enum dem_law)(k / 2), k % 2);
@@ -227,9 +222,8 @@ static void test_keeps_momentum(void **state)
 
 // Stiff rolling springs decide the step: with k_r = 2.25 k_n mu_r^2 R*^2 between two
 // grains and no friction the fastest mode is that of two that turn against each other.
-static void test_limit_of_the_step(void **state)
+TEST(limit_of_the_step)
 {
-    (void)state;
     const struct vector position[2] = {{0, 0, 0}, {0, 0, 2 * GRAIN - 1e-7}};
     struct scene scene;
     set_scene(&scene, 2, position, 0, NULL);
@@ -257,9 +251,8 @@ static void test_limit_of_the_step(void **state)
 }
 
 // 4 and 8 pairs at once, of one radius and of many, with each law.
-static void test_width_makes_no_difference(void **state)
+TEST_WHERE(has_avx512(), "no AVX-512", width_makes_no_difference)
 {
-    (void)state;
     for (int k = 0; k < 6; k++) {
         struct scene scene;
         struct dem *dem[2];
@@ -280,9 +273,8 @@ static void test_width_makes_no_difference(void **state)
     }
 }
 
-static void test_refuses_what_it_cannot(void **state)
+TEST(refuses_what_it_cannot)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     setup.material.rolling_friction = 0.1;
@@ -294,20 +286,4 @@ static void test_refuses_what_it_cannot(void **state)
     setup.pair_rolling_friction = &pairs;
     assert_refused(setup, "materials 0 and 0: rolling friction");
     packing_free(&packing);
-}
-
-int main(void)
-{
-    const bool wide = has_avx512();
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rolls_to_rest),
-        cmocka_unit_test(test_slope),
-        cmocka_unit_test(test_turn_against_each_other),
-        cmocka_unit_test(test_twist_is_free),
-        cmocka_unit_test(test_keeps_momentum),
-        cmocka_unit_test(test_limit_of_the_step),
-        UNIT_TEST_WHERE(wide, "no AVX-512", test_width_makes_no_difference),
-        cmocka_unit_test(test_refuses_what_it_cannot)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -45,9 +45,8 @@ static double force_along_x(const struct dem *dem, int k)
     return force;
 }
 
-static void test_held_pair_is_pulled(void **state)
+TEST(held_pair_is_pulled)
 {
-    (void)state;
     static const uint8_t fixed[2] = {1, 1};
     for (int kind = 0; kind < 2; kind++) {
         struct packing packing = bonded_pair();
@@ -66,9 +65,8 @@ static void test_held_pair_is_pulled(void **state)
     }
 }
 
-static void test_breaks_at_the_strain_of_its_strength(void **state)
+TEST(breaks_at_the_strain_of_its_strength)
 {
-    (void)state;
     static const uint8_t fixed[2] = {1, 1};
     const double strength = 1.6e4, limit = strength / (8e14 * 2 * RADIUS);
     struct packing packing = bonded_pair();
@@ -88,9 +86,8 @@ static void test_breaks_at_the_strain_of_its_strength(void **state)
     packing_free(&packing);
 }
 
-static void test_free_body_shrinks_without_force(void **state)
+TEST(free_body_shrinks_without_force)
 {
-    (void)state;
     struct packing packing = cubic_lattice(6, 3, 2, false);
     struct dem_setup setup = shrinking_setup(&packing);
     struct dem *dem = create(&setup);
@@ -114,9 +111,8 @@ static void test_free_body_shrinks_without_force(void **state)
     packing_free(&packing);
 }
 
-static void test_unequal_grains_shrink_each_by_itself(void **state)
+TEST(unequal_grains_shrink_each_by_itself)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     packing.radius[1] = 2 * RADIUS;
     packing.position[1].x += RADIUS;
@@ -133,9 +129,8 @@ static void test_unequal_grains_shrink_each_by_itself(void **state)
     packing_free(&packing);
 }
 
-static void test_held_bar(void **state)
+TEST(held_bar)
 {
-    (void)state;
     enum { N = 9 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     uint8_t fixed[N] = {0};
@@ -157,9 +152,8 @@ static void test_held_bar(void **state)
 
 // Between two grains that are not bonded: pressed together by F they lie as deep in
 // each other as with the smaller radii.
-static void test_contacts_follow_the_radii(void **state)
+TEST(contacts_follow_the_radii)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     packing.n_bond = 0;
     struct dem_setup setup = shrinking_setup(&packing);
@@ -179,9 +173,8 @@ static void test_contacts_follow_the_radii(void **state)
 
 // kinetic + elastic + lost = gained, from nothing: breaking bonds, dashpots, and the
 // work of shrinking.
-static void test_energy_balances(void **state)
+TEST(energy_balances)
 {
-    (void)state;
     struct packing packing = cubic_lattice(5, 4, 3, false);
     struct dem_setup setup = shrinking_setup(&packing);
     uint8_t *fixed = NEW_ARRAY(uint8_t, packing.n_particle);
@@ -247,9 +240,8 @@ static void dry_layer(struct dem *dem, int n, int from, int to)
     }
 }
 
-static void test_threads_and_restart_keep_the_bytes(void **state)
+TEST(threads_and_restart_keep_the_bytes)
 {
-    (void)state;
     struct packing packing[3];
     uint8_t *fixed[3];
     struct dem *dem[3];
@@ -275,20 +267,4 @@ static void test_threads_and_restart_keep_the_bytes(void **state)
         free(fixed[k]);
         packing_free(&packing[k]);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_held_pair_is_pulled),
-        cmocka_unit_test(test_breaks_at_the_strain_of_its_strength),
-        cmocka_unit_test(test_free_body_shrinks_without_force),
-        cmocka_unit_test(test_unequal_grains_shrink_each_by_itself),
-        cmocka_unit_test(test_held_bar),
-        cmocka_unit_test(test_contacts_follow_the_radii),
-        cmocka_unit_test(test_energy_balances),
-        cmocka_unit_test(test_threads_and_restart_keep_the_bytes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,9 +38,8 @@ static double limit_of(struct dem_setup setup)
     return safety;
 }
 
-static void test_refused_past_the_limit(void **state)
+TEST(refused_past_the_limit)
 {
-    (void)state;
     struct packing packing = shrunk_lattice();
     for (int k = 0; k < 2; k++) {
         struct dem_setup setup = stiff_setup(&packing);
@@ -61,9 +60,8 @@ static void test_refused_past_the_limit(void **state)
 
 // On the lattice the bound is nearly exact: inside it nothing grows, 3 % past it the
 // shake explodes, with dashpots and without.
-static void test_limit_is_where_it_breaks(void **state)
+TEST(limit_is_where_it_breaks)
 {
-    (void)state;
     struct packing packing = shrunk_lattice();
     for (int k = 0; k < 2; k++) {
         struct dem_setup setup = stiff_setup(&packing);
@@ -93,9 +91,8 @@ static void test_limit_is_where_it_breaks(void **state)
     packing_free(&packing);
 }
 
-static void test_nan_force_stops_the_run(void **state)
+TEST(nan_force_stops_the_run)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     struct dem *dem = create(&setup);
@@ -116,9 +113,8 @@ static void assert_bad(struct dem_setup setup, const char *word)
     if (!strstr(reason.text, word)) fail_msg("\"%s\" lacks \"%s\"", reason.text, word);
 }
 
-static void test_bad_numbers(void **state)
+TEST(bad_numbers)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     const struct dem_setup good = stiff_setup(&packing);
     struct dem_setup setup = good;
@@ -148,9 +144,8 @@ static void test_bad_numbers(void **state)
     packing_free(&packing);
 }
 
-static void test_bad_packings(void **state)
+TEST(bad_packings)
 {
-    (void)state;
     struct packing packing = cubic_lattice(2, 2, 1, false);
     const struct dem_setup setup = stiff_setup(&packing);
     packing.bond[1][1] = 4;
@@ -173,9 +168,8 @@ static void test_bad_packings(void **state)
     packing_free(&packing);
 }
 
-static void test_few_grains(void **state)
+TEST(few_grains)
 {
-    (void)state;
     for (int n = 0; n < 2; n++) {
         struct packing packing = new_packing(n, 0);
         struct dem_setup setup = stiff_setup(&packing);
@@ -192,9 +186,8 @@ static void test_few_grains(void **state)
 }
 
 // Whichever way the scene is turned; an irregular one, with and without dashpots.
-static void test_limit_turns_along(void **state)
+TEST(limit_turns_along)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     const struct vector axis = {1, 2, 3};
     struct packing other = turned_packing(&packing, axis, 1, NULL);
@@ -208,19 +201,4 @@ static void test_limit_turns_along(void **state)
     }
     packing_free(&other);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_refused_past_the_limit),
-        cmocka_unit_test(test_limit_is_where_it_breaks),
-        cmocka_unit_test(test_nan_force_stops_the_run),
-        cmocka_unit_test(test_bad_numbers),
-        cmocka_unit_test(test_bad_packings),
-        cmocka_unit_test(test_few_grains),
-        cmocka_unit_test(test_limit_turns_along),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

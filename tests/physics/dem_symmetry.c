@@ -44,9 +44,8 @@ static void assert_same_bytes(const struct dem *a, const struct dem *b)
     }
 }
 
-static void test_threads_make_no_difference(void **state)
+TEST(threads_make_no_difference)
 {
-    (void)state;
     struct packing packing = cubic_lattice(14, 14, 14, false);
     struct vector *force = random_vectors(packing.n_particle, 5e-10, 11);
     const int threads[4] = {1, 2, 3, 7};
@@ -67,9 +66,8 @@ static void test_threads_make_no_difference(void **state)
     packing_free(&packing);
 }
 
-static void test_width_makes_no_difference(void **state)
+TEST_WHERE(has_avx512(), "no wide vectors here", width_makes_no_difference)
 {
-    (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     struct vector *force = random_vectors(N, 5e-10, 12);
     struct dem_setup setup = weak_setup(&packing);
@@ -90,9 +88,8 @@ static void test_width_makes_no_difference(void **state)
 
 // Lengths times 2^20, densities by 2^-60: masses stay, stiffnesses stay, so that forces
 // grow by 2^20 as the lengths do and every scaled number is the same.
-static void test_scale_makes_no_difference(void **state)
+TEST(scale_makes_no_difference)
 {
-    (void)state;
     struct dem *dem[2];
     for (int k = 0; k < 2; k++) {
         const double length = k ? 0x1p20 : 1;
@@ -156,9 +153,8 @@ static double difference(const struct dem *a, const struct rotation *r,
 }
 
 // Without a time for chaos: contacts that open and close part near trajectories.
-static void test_rotation_turns_the_result(void **state)
+TEST(rotation_turns_the_result)
 {
-    (void)state;
     const struct rotation turn = some_rotation();
     struct dem *dem[2];
     for (int k = 0; k < 2; k++) {
@@ -180,9 +176,8 @@ static void test_rotation_turns_the_result(void **state)
     dem_free(dem[1]);
 }
 
-static void test_numbering_makes_no_difference(void **state)
+TEST(numbering_makes_no_difference)
 {
-    (void)state;
     int number[N];
     for (int i = 0; i < N; i++)
         number[i] = (i * 37 + 11) % N; // a permutation, as 37 is odd
@@ -216,9 +211,8 @@ static void test_numbering_makes_no_difference(void **state)
 
 // A pair that spins as one about any axis keeps its history: nothing but the turned
 // shear force comes back after a quarter turn.
-static void test_history_turns_with_the_pair(void **state)
+TEST(history_turns_with_the_pair)
 {
-    (void)state;
     struct packing packing = bonded_pair();
     struct dem_setup setup = stiff_setup(&packing);
     setup.material.damping_ratio = 0;
@@ -243,19 +237,4 @@ static void test_history_turns_with_the_pair(void **state)
     assert_close(fabs(force.x), 2e-9, 2e-2);
     dem_free(dem);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_threads_make_no_difference),
-        UNIT_TEST_WHERE(has_avx512(), "no wide vectors here",
-                        test_width_makes_no_difference),
-        cmocka_unit_test(test_scale_makes_no_difference),
-        cmocka_unit_test(test_rotation_turns_the_result),
-        cmocka_unit_test(test_numbering_makes_no_difference),
-        cmocka_unit_test(test_history_turns_with_the_pair),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

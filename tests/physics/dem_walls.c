@@ -56,9 +56,8 @@ static void rest_on(const struct dem_wall *wall, enum dem_law law, double fricti
     packing_free(&scene.packing);
 }
 
-static void test_walls_carry_weight(void **state)
+TEST(walls_carry_weight)
 {
-    (void)state;
     for (int w = 0; w < N_SUPPORT; w++)
         for (int k = 0; k < 2; k++) {
             rest_on(&supports[w], DEM_LINEAR, 0.4 * k);
@@ -67,9 +66,8 @@ static void test_walls_carry_weight(void **state)
 }
 
 // An overlap of 1e-9 radii on what is flat or round.
-static void test_light_touch(void **state)
+TEST(light_touch)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     for (int w = 0; w < 5; w++) {
         struct scene scene;
@@ -106,9 +104,8 @@ static void check_touch(const struct dem_wall *wall, struct vector position,
     packing_free(&scene.packing);
 }
 
-static void test_block_pushes_from_the_nearest_point(void **state)
+TEST(block_pushes_from_the_nearest_point)
 {
-    (void)state;
     const struct dem_wall block = {.shape = DEM_BLOCK,
                                    .point = {1e-2, 2e-2, 3e-2},
                                    .half_edge = {2e-3, 3e-3, 4e-3}};
@@ -128,9 +125,8 @@ static void test_block_pushes_from_the_nearest_point(void **state)
                 (struct vector){0, -1, 0}, GRAIN + 0.2e-3);
 }
 
-static void test_ring_pushes_from_the_nearest_point(void **state)
+TEST(ring_pushes_from_the_nearest_point)
 {
-    (void)state;
     const struct dem_wall ring = {
         .shape = DEM_RING, .normal = {0, 0, 1}, .radius = 9e-3, .inner_radius = 4e-3};
     const double half = 0.5 * GRAIN;
@@ -146,9 +142,8 @@ static void test_ring_pushes_from_the_nearest_point(void **state)
 }
 
 // Centres where no direction is nearest.
-static void test_degenerate_centres(void **state)
+TEST(degenerate_centres)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall walls[] = {
         {.shape = DEM_CYLINDER, .normal = {1, 1, 1}, .radius = 1e-4, .outside = true},
@@ -172,9 +167,8 @@ static void test_degenerate_centres(void **state)
 }
 
 // A search in between changes not a byte.
-static void test_searches_leave_history(void **state)
+TEST(searches_leave_history)
 {
-    (void)state;
     struct vector end[2];
     for (int k = 0; k < 2; k++) {
         const struct vector position = {4e-3, -0.5e-3, -2.93e-3};
@@ -213,9 +207,8 @@ static double first_touch(struct dem *dem)
 }
 
 // Walls that come from afar, from any side, are noticed in time.
-static void test_walls_arrive(void **state)
+TEST(walls_arrive)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall walls[] = {
         {.point = {0, 0, -6e-3}, .normal = {0, 0, 1}},
@@ -241,9 +234,8 @@ static void test_walls_arrive(void **state)
 
 // A grain that leaves a block by one side and comes back, where the box repeats, by the
 // other.
-static void test_box_repeats(void **state)
+TEST(box_repeats)
 {
-    (void)state;
     const struct vector position = {7e-3, 5e-3, 5e-3}, velocity = {0.1, 0, 0};
     const struct dem_wall block = {.shape = DEM_BLOCK,
                                    .point = {5e-3, 5e-3, 5e-3},
@@ -263,20 +255,4 @@ static void test_box_repeats(void **state)
     assert_true(dem_wall_state(dem, 0).force.x > 0);
     dem_free(dem);
     packing_free(&scene.packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_walls_carry_weight),
-        cmocka_unit_test(test_light_touch),
-        cmocka_unit_test(test_block_pushes_from_the_nearest_point),
-        cmocka_unit_test(test_ring_pushes_from_the_nearest_point),
-        cmocka_unit_test(test_degenerate_centres),
-        cmocka_unit_test(test_searches_leave_history),
-        cmocka_unit_test(test_walls_arrive),
-        cmocka_unit_test(test_box_repeats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

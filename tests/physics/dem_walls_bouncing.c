@@ -33,9 +33,8 @@ static struct rebound rebound(double restitution, double contact_time, int steps
     return found;
 }
 
-static void test_rebound(void **state)
+TEST(rebound)
 {
-    (void)state;
     for (int k = 2; k <= 10; k += 2) {
         const double e = 0.1 * k, t = 1e-4;
         const struct rebound coarse = rebound(e, t, 200), fine = rebound(e, t, 2000);
@@ -82,9 +81,8 @@ static double swing(enum dem_wall_shape shape, double friction, int turns)
 
 // A body that slides in a bowl swings as a pendulum does; a ball that rolls, slower by
 // sqrt(7/5).
-static void test_pendulum(void **state)
+TEST(pendulum)
 {
-    (void)state;
     const double track = 10e-3 - GRAIN, angle = 0.1;
     const double period = 2 * M_PI * sqrt(track / gravity) * (1 + angle * angle / 16);
     const enum dem_wall_shape shapes[] = {DEM_CYLINDER, DEM_SPHERE};
@@ -97,9 +95,8 @@ static void test_pendulum(void **state)
 // A blow by Hertz: the overlap goes to (15 m v^2 / (16 E* sqrt R))^(2/5) and
 // lasts 2.9433 of what that takes at the first speed; against a rigid wall and one like
 // the grain.
-static void test_hertz_blow(void **state)
+TEST(hertz_blow)
 {
-    (void)state;
     for (int material = 0; material < 2; material++) {
         const struct vector position = {0, 0, GRAIN}, velocity = {0, 0, -0.1};
         const struct dem_wall floor = {
@@ -159,9 +156,8 @@ enum { N_BOX = sizeof box_of_walls / sizeof *box_of_walls };
 
 // What walls do to grains is the change of their momentum, and of their angular
 // momentum, in every time step.
-static void test_momentum(void **state)
+TEST(momentum)
 {
-    (void)state;
     struct vector position[27];
     for (int i = 0; i < 27; i++)
         position[i] = (struct vector){(1.6 + 2.4 * (i % 3)) * GRAIN,
@@ -245,9 +241,8 @@ static double bounce(enum dem_law law, double friction, bool ring, double safety
     return furthest;
 }
 
-static void test_bouncing_keeps_its_energy(void **state)
+TEST(bouncing_keeps_its_energy)
 {
-    (void)state;
     for (enum dem_law law = DEM_LINEAR; law <= DEM_HERTZ; law += 2)
         for (int k = 0; k < 4; k++) {
             const double coarse = bounce(law, k / 2 ? 0.3 : 0, k % 2, 0.04);
@@ -255,17 +250,4 @@ static void test_bouncing_keeps_its_energy(void **state)
             assert_true(fine < 5e-4);
             assert_true(fine < 0.5 * coarse);
         }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rebound),
-        cmocka_unit_test(test_pendulum),
-        cmocka_unit_test(test_hertz_blow),
-        cmocka_unit_test(test_momentum),
-        cmocka_unit_test(test_bouncing_keeps_its_energy),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,9 +20,8 @@ static struct dem *turntable(struct scene *scene, struct dem_wall *table, double
 }
 
 // It slides at first: friction drags it along and brakes the table.
-static void test_turntable_drags(void **state)
+TEST(turntable_drags)
 {
-    (void)state;
     const double at = 0.05, rate = 40, force = 0.3 * weight();
     struct scene scene;
     struct dem_wall table;
@@ -48,9 +47,8 @@ static void test_turntable_drags(void **state)
 
 // A ball that rolls on a turntable goes round in circles at 2/7 of its rate, wherever
 // their centre.
-static void test_turntable_rolling(void **state)
+TEST(turntable_rolling)
 {
-    (void)state;
     const double at = 0.05, rate = 10, speed = 0.02;
     struct scene scene;
     struct dem_wall table;
@@ -107,17 +105,15 @@ static void press_column(enum dem_law law, double target)
     packing_free(&scene.packing);
 }
 
-static void test_servo(void **state)
+TEST(servo)
 {
-    (void)state;
     press_column(DEM_LINEAR, 0.01);
     press_column(DEM_HERTZ, 0.01);
 }
 
 // Near the limit of the time step, without damping and with much of it.
-static void test_servo_is_stable(void **state)
+TEST(servo_is_stable)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall walls[] = {{.point = {0, 0, -GRAIN}, .normal = {0, 0, 1}},
                                      {.point = {0, 0, GRAIN},
@@ -142,9 +138,8 @@ static void test_servo_is_stable(void **state)
 
 // Two walls that close on a grain: each spring takes half of the way, and the work of
 // the wall is all there is.
-static void test_compression(void **state)
+TEST(compression)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall walls[] = {
         {.point = {0, 0, -GRAIN}, .normal = {0, 0, 1}},
@@ -172,9 +167,8 @@ static void test_compression(void **state)
 
 // A grain held between two planes that turn with it, on the axis, swings sideways on
 // their shear springs as if nothing turned: the springs take part in the turning.
-static void test_springs_turn_along(void **state)
+TEST(springs_turn_along)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0}, velocity = {1e-3, 0, 0}, spin = {0, 0, 300};
     const double squeeze = 0.01 * GRAIN;
     const struct dem_wall walls[] = {
@@ -213,9 +207,8 @@ static void move_wall(struct dem *dem, struct vector velocity, int steps)
 // A wall that moves into a held grain, sideways, halfway out and in again. Hertz: shear
 // force is 8 G* sqrt(R U) times the way, goes with sqrt(U) as the contact opens and
 // stays as it closes. Both forces act at the middle of the overlap.
-static void test_hertz_shear(void **state)
+TEST(hertz_shear)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall floor = {.point = {1e-3, 0, -GRAIN}, .normal = {0, 0, 1}};
     const uint8_t fixed = 1;
@@ -249,9 +242,8 @@ static void test_hertz_shear(void **state)
 }
 
 // Overlap and force of a contact are of the same moment while the wall moves.
-static void test_contact_of_a_moving_wall(void **state)
+TEST(contact_of_a_moving_wall)
 {
-    (void)state;
     const struct vector origin = {0, 0, 0};
     const struct dem_wall wall = {.shape = DEM_SPHERE,
                                   .point = {0, 0, -3e-3},
@@ -274,20 +266,4 @@ static void test_contact_of_a_moving_wall(void **state)
     free(contact);
     dem_free(dem);
     packing_free(&scene.packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_turntable_drags),
-        cmocka_unit_test(test_turntable_rolling),
-        cmocka_unit_test(test_servo),
-        cmocka_unit_test(test_servo_is_stable),
-        cmocka_unit_test(test_compression),
-        cmocka_unit_test(test_springs_turn_along),
-        cmocka_unit_test(test_hertz_shear),
-        cmocka_unit_test(test_contact_of_a_moving_wall),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

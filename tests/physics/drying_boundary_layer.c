@@ -44,9 +44,8 @@ static int walls_at(const struct network *network, int node)
     return __builtin_popcount(network->node_walls[node]);
 }
 
-static void test_lattice_has_the_areas_of_the_paper(void **state)
+TEST(lattice_has_the_areas_of_the_paper)
 {
-    (void)state;
     struct network network = lattice_network(4, 5, 6, spacing);
     for (int wall = 0; wall < WALL_COUNT; wall++) {
         struct boundary_layer layer =
@@ -116,9 +115,8 @@ static struct network random_tubes(uint64_t seed, double size, double near)
     return tubes(place, N_PLACE, size);
 }
 
-static void test_areas_sum_to_the_face(void **state)
+TEST(areas_sum_to_the_face)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 20; seed++)
         for (int repeats = 0; repeats < 4; repeats++) {
             struct network network = random_tubes(seed, 20, 1e-7);
@@ -136,9 +134,8 @@ static void test_areas_sum_to_the_face(void **state)
 }
 
 // Sampled by brute force: what part of the face is nearest to each node.
-static void test_areas_are_those_nearest(void **state)
+TEST(areas_are_those_nearest)
 {
-    (void)state;
     enum { SAMPLES = 200000 };
     const double size = 20;
     struct network network = random_tubes(3, size, 1e-7);
@@ -179,9 +176,8 @@ static void test_areas_are_those_nearest(void **state)
 
 // A field linear along the face brings each inner column as much as it takes, and two
 // fields linear in x and y drive sum(conductance dx^2) = volume of the level.
-static void test_linear_fields_are_exact(void **state)
+TEST(linear_fields_are_exact)
 {
-    (void)state;
     const double size = 20;
     struct network network = random_tubes(5, size, 1e-2);
     struct boundary_layer layer =
@@ -231,9 +227,8 @@ static void drop_faces(struct network *network, int wall, const bool *drop)
 }
 
 // Where something is cut out, the open surface is what the wall's faces cover.
-static void test_holes_have_no_area(void **state)
+TEST(holes_have_no_area)
 {
-    (void)state;
     for (int wall = 4; wall < 6; wall++) { // seen from inside and from outside
         struct network network = lattice_network(6, 6, 3, spacing);
         const int floor = wall == 4 ? 0 : 25; // 5 by 5 grains each
@@ -260,9 +255,8 @@ static void test_holes_have_no_area(void **state)
     }
 }
 
-static void test_holes_in_a_face_that_repeats(void **state)
+TEST(holes_in_a_face_that_repeats)
 {
-    (void)state;
     struct network network = lattice_network(6, 6, 3, spacing);
     network.packing.periodic[0] = 1;
     network.packing.periodic[1] = 1;
@@ -277,9 +271,8 @@ static void test_holes_in_a_face_that_repeats(void **state)
 }
 
 // Nodes without liquid throats have no column, and their area goes to those nearest.
-static void test_only_nodes_with_liquid_have_columns(void **state)
+TEST(only_nodes_with_liquid_have_columns)
 {
-    (void)state;
     struct network network = lattice_network(6, 6, 3, spacing);
     for (int t = 0; t < network.n_throat; t++)
         for (int end = 0; end < 2; end++)
@@ -295,9 +288,8 @@ static void test_only_nodes_with_liquid_have_columns(void **state)
     network_free(&network);
 }
 
-static void test_outermost_of_nodes_in_one_column(void **state)
+TEST(outermost_of_nodes_in_one_column)
 {
-    (void)state;
     const double place[5][2] = {{1, 1}, {1, 3}, {3, 1}, {3, 3}, {3, 3}};
     struct network network = tubes(place, 5, 4);
     network.node_position[6].z -= 0.25 * spacing; // behind the fifth
@@ -312,9 +304,8 @@ static void test_outermost_of_nodes_in_one_column(void **state)
 }
 
 // Columns on those nodes of the surface where a throat of the boundary layer begins.
-static void test_auxiliary_feet(void **state)
+TEST(auxiliary_feet)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 4, spacing);
     const struct boundary_form form = {.feet = FEET_AUXILIARY};
     struct boundary_layer layer;
@@ -378,9 +369,8 @@ static double striped_rate(int columns, bool lumped)
 // Far above stripes that are wet over the share f of each period P, the layer seems
 // thicker by P/pi ln(1/sin(pi f/2)): Laplace's equation as in Philip (1972), whose
 // layer has no end; at one period it is off by exp(-4 pi).
-static void test_lateral_diffusion_over_stripes(void **state)
+TEST(lateral_diffusion_over_stripes)
 {
-    (void)state;
     const double expected = 1 / (1 + log(M_SQRT2) / M_PI);
     double before = 0, error_before = 0;
     for (int columns = 8; columns <= 64; columns *= 2) {
@@ -396,9 +386,8 @@ static void test_lateral_diffusion_over_stripes(void **state)
     assert_true(error_before < 5e-3);
 }
 
-static void test_lumped_transfer_knows_no_neighbours(void **state)
+TEST(lumped_transfer_knows_no_neighbours)
 {
-    (void)state;
     assert_true(fabs(striped_rate(16, true) - 0.5) < 1e-12);
 }
 
@@ -454,9 +443,8 @@ static gsl_vector *solve_at_once(const struct boundary_layer *layer)
 }
 
 // Wide layers are eliminated column by column, narrow ones level by level.
-static void test_columns_and_levels_are_eliminated(void **state)
+TEST(columns_and_levels_are_eliminated)
 {
-    (void)state;
     for (int wide = 0; wide < 2; wide++) {
         struct network network = wide ? lattice_network(14, 15, 1, spacing)
                                       : lattice_network(3, 4, 1, spacing);
@@ -481,9 +469,8 @@ static void test_columns_and_levels_are_eliminated(void **state)
 }
 
 // The row of columns in the middle comes last, and without it two halves are left.
-static void test_last_columns_part_the_others(void **state)
+TEST(last_columns_part_the_others)
 {
-    (void)state;
     enum { EDGE = 16, COLUMNS = EDGE * EDGE };
     struct network network = lattice_network(EDGE, EDGE, 1, spacing);
     struct boundary_layer layer = make(&network, 5, &(struct boundary_form){0});
@@ -510,24 +497,4 @@ static void test_last_columns_part_the_others(void **state)
     free(order);
     boundary_layer_free(&layer);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lattice_has_the_areas_of_the_paper),
-        cmocka_unit_test(test_areas_sum_to_the_face),
-        cmocka_unit_test(test_areas_are_those_nearest),
-        cmocka_unit_test(test_linear_fields_are_exact),
-        cmocka_unit_test(test_holes_have_no_area),
-        cmocka_unit_test(test_holes_in_a_face_that_repeats),
-        cmocka_unit_test(test_only_nodes_with_liquid_have_columns),
-        cmocka_unit_test(test_outermost_of_nodes_in_one_column),
-        cmocka_unit_test(test_auxiliary_feet),
-        cmocka_unit_test(test_lateral_diffusion_over_stripes),
-        cmocka_unit_test(test_lumped_transfer_knows_no_neighbours),
-        cmocka_unit_test(test_columns_and_levels_are_eliminated),
-        cmocka_unit_test(test_last_columns_part_the_others)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

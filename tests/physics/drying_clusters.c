@@ -139,27 +139,16 @@ static void empty_in_random_order(bool gas_parts, uint64_t *seed)
     network_free(&network);
 }
 
-static void test_clusters_where_gas_parts_liquid(void **state)
+TEST(clusters_where_gas_parts_liquid)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int run = 0; run < 20; run++)
         empty_in_random_order(true, &seed);
 }
 
-static void test_clusters_where_liquid_stays_in_touch(void **state)
+TEST(clusters_where_liquid_stays_in_touch)
 {
-    (void)state;
     uint64_t seed = 2;
     for (int run = 0; run < 20; run++)
         empty_in_random_order(false, &seed);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clusters_where_gas_parts_liquid),
-        cmocka_unit_test(test_clusters_where_liquid_stays_in_touch)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,9 +20,8 @@ static double rate_unit(const struct drying_conditions *conditions)
 
 // A surface all wet evaporates its area over the thickness of the layer, on each open
 // wall by itself, with a lattice or without.
-static void test_first_rate_of_any_set(void **state)
+TEST(first_rate_of_any_set)
 {
-    (void)state;
     struct network network = lattice_network(4, 5, 6, spacing);
     const double area[3] = {4 * 5, 3 * 5, 3 * 4}; // of the walls across x, y, z
     for (unsigned walls = 1; walls <= all_walls; walls += 3)
@@ -44,9 +43,8 @@ static void test_first_rate_of_any_set(void **state)
 }
 
 // A cube dries alike through each of its faces.
-static void test_each_face_alike(void **state)
+TEST(each_face_alike)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_IMMOBILE);
     struct drying_history first = dry_and_check(&network, &conditions);
@@ -68,9 +66,8 @@ static void test_each_face_alike(void **state)
 
 // One column of N throats open at both ends: of equal ones gas enters the lowest first,
 // so that it comes up from below while the upper end stays wet.
-static void test_tube_open_at_both_ends(void **state)
+TEST(tube_open_at_both_ends)
 {
-    (void)state;
     const int n = 7;
     struct network network = lattice_column(n, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -90,9 +87,8 @@ static void test_tube_open_at_both_ends(void **state)
 }
 
 // The rate goes with ln((p_g - p_air) / (p_g - p_sat)), and the order stays.
-static void test_humidity_of_the_air(void **state)
+TEST(humidity_of_the_air)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     randomise_radii(&network, spacing, 0.3, 8);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -113,9 +109,8 @@ static void test_humidity_of_the_air(void **state)
 }
 
 // Those along one wall hold nothing and never take part; the rest dries.
-static void test_imposed_empty_walls(void **state)
+TEST(imposed_empty_walls)
 {
-    (void)state;
     struct network network = lattice_network(5, 4, 6, spacing);
     randomise_radii(&network, spacing, 0.3, 9);
     int along = 0;
@@ -129,15 +124,4 @@ static void test_imposed_empty_walls(void **state)
         assert_int_equal(network.throat_kind[history.event_throat[k]], THROAT_NETWORK);
     drying_history_free(&history);
     network_free(&network);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_first_rate_of_any_set),
-                                       cmocka_unit_test(test_each_face_alike),
-                                       cmocka_unit_test(test_tube_open_at_both_ends),
-                                       cmocka_unit_test(test_humidity_of_the_air),
-                                       cmocka_unit_test(test_imposed_empty_walls)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

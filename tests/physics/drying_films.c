@@ -27,9 +27,8 @@ static const double degree = M_PI / 180;
 // ---- corners ----------------------------------------------------------------------
 
 // Three corners of a triangle, or four of a square, around its inscribed circle.
-static void test_area_is_that_beside_a_circle(void **state)
+TEST(area_is_that_beside_a_circle)
 {
-    (void)state;
     assert_close(4 * corner_area(45 * degree, 0), 4 - M_PI, 1e-14);
     assert_close(3 * corner_area(30 * degree, 0), 3 * sqrt(3) - M_PI, 1e-14);
 }
@@ -38,9 +37,8 @@ static void test_area_is_that_beside_a_circle(void **state)
 // 0: 93.93 at a half angle of 45 degrees, 31.07 at 30. A series of harmonic functions
 // that vanish at the walls, 60 terms fitted on the meniscus to 1e-8 (at 50 degrees to
 // 4e-6), gives 3 % less, as the elements here do.
-static void test_resistance(void **state)
+TEST(resistance)
 {
-    (void)state;
     static const struct {
         double half_angle, contact_angle, resistance;
     } by_series[] = {{20, 0, 16.411962}, {30, 0, 30.088334},  {44.999, 0, 91.361279},
@@ -55,17 +53,15 @@ static void test_resistance(void **state)
 
 // Liquid in a narrow wedge flows as between parallel plates: the mean of half gap^2 / 3
 // over its area, a^2 x_c^2 / 6 with x_c = cos t / a, is 1/6.
-static void test_narrow_corner_is_a_gap(void **state)
+TEST(narrow_corner_is_a_gap)
 {
-    (void)state;
     for (double half_angle = 0.02; half_angle > 0.0005; half_angle /= 2)
         assert_within(corner_resistance(half_angle, 0), 6, 20 * half_angle);
     assert_within(corner_resistance(0.001, 60 * degree) * 0.25, 6, 0.1);
 }
 
-static void test_no_film_where_angles_make_90_degrees(void **state)
+TEST(no_film_where_angles_make_90_degrees)
 {
-    (void)state;
     assert_true(corner_conductance(30 * degree, 59.9 * degree) > 0);
     assert_true(corner_conductance(30 * degree, 59.9 * degree) < 1e-9);
     assert_true(corner_conductance(30 * degree, 60.1 * degree) == 0);
@@ -284,9 +280,8 @@ static int check_chain(double reach, double ring, double narrow)
     return form.m;
 }
 
-static void test_chain(void **state)
+TEST(chain)
 {
-    (void)state;
     assert_true(check_chain(7.5, 0.1, 1) > 5);
     assert_true(check_chain(0.5, 0.1, 1) > 5);
     assert_true(check_chain(20.2, 0.01, 1) > 5);
@@ -295,18 +290,16 @@ static void test_chain(void **state)
 
 // Gas comes to narrow throats: the liquid's suction doubles, films are thinner, and
 // bring an eighth. At once they no longer reach the mouth.
-static void test_films_that_break(void **state)
+TEST(films_that_break)
 {
-    (void)state;
     assert_true(check_chain(150.5, 0.01, 0.5) > 5);
 }
 
 // Where films have left the mouth they are as long as brings what evaporates at their
 // end, conductance r^3 / E: they grow with the depth m as the resistance of the gas
 // does, but for what they lose when a node dries.
-static void test_length_of_films(void **state)
+TEST(length_of_films)
 {
-    (void)state;
     struct chain chain;
     make_chain(&chain, 200, 7.5, 1e-4, 1);
     struct drying *drying = &chain.drying;
@@ -326,9 +319,8 @@ static void test_length_of_films(void **state)
 }
 
 // The cube of the menisci's radius falls evenly from the liquid to the mouth.
-static void test_radius_cubed_is_linear(void **state)
+TEST(radius_cubed_is_linear)
 {
-    (void)state;
     struct chain chain;
     make_chain(&chain, 40, 30.5, 0.01, 1);
     struct drying *drying = &chain.drying;
@@ -396,9 +388,8 @@ static double check_heavy_chain(int fineness)
 }
 
 // Heights converge to the closed form as the square of the throats' length.
-static void test_films_under_gravity(void **state)
+TEST(films_under_gravity)
 {
-    (void)state;
     const double coarse = check_heavy_chain(1), fine = check_heavy_chain(2),
                  finest = check_heavy_chain(4);
     assert_true(coarse < 2e-3);
@@ -406,9 +397,8 @@ static void test_films_under_gravity(void **state)
 }
 
 // No level is lost along a film that conducts 1e6 times what evaporates.
-static void test_films_at_rest_have_the_weight_of_the_liquid(void **state)
+TEST(films_at_rest_have_the_weight_of_the_liquid)
 {
-    (void)state;
     struct chain chain;
     make_heavy_chain(&chain, 40, 4e7, 0.01, 1, 0.5);
     struct drying *drying = &chain.drying;
@@ -456,9 +446,8 @@ static int depth_of_films(double conductance, double *rate_per_column)
 // conductance, twice the depth. The surface takes more in its middle than at its edges,
 // so the first node falls dry some layers before; how many does not depend on the
 // depth.
-static void test_depth_in_a_lattice(void **state)
+TEST(depth_in_a_lattice)
 {
-    (void)state;
     double rate;
     int depth[3];
     const double conductance = 800;
@@ -468,23 +457,4 @@ static void test_depth_in_a_lattice(void **state)
     assert_true(unit > 10);
     assert_within(depth[1] - depth[0], unit, 1.5);
     assert_within(depth[2] - depth[1], 2 * unit, 1.5);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_area_is_that_beside_a_circle),
-        cmocka_unit_test(test_resistance),
-        cmocka_unit_test(test_narrow_corner_is_a_gap),
-        cmocka_unit_test(test_no_film_where_angles_make_90_degrees),
-        cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_films_that_break),
-        cmocka_unit_test(test_length_of_films),
-        cmocka_unit_test(test_radius_cubed_is_linear),
-        cmocka_unit_test(test_films_under_gravity),
-        cmocka_unit_test(test_films_at_rest_have_the_weight_of_the_liquid),
-        cmocka_unit_test(test_depth_in_a_lattice),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

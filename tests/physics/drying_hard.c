@@ -12,9 +12,8 @@
 
 static const double spacing = 5e-7;
 
-static void test_equal_radii_in_a_stated_order(void **state)
+TEST(equal_radii_in_a_stated_order)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_VISCOUS; liquid++) {
         const struct drying_conditions conditions =
@@ -34,9 +33,8 @@ static void test_equal_radii_in_a_stated_order(void **state)
 
 // The least throats hold 1e-12 of what the widest do: they empty within the last digit
 // of the time.
-static void test_radii_over_six_decades(void **state)
+TEST(radii_over_six_decades)
 {
-    (void)state;
     struct network network = lattice_network(6, 6, 6, spacing);
     uint64_t seed = 8;
     for (int t = 0; t < network.n_throat; t++)
@@ -62,9 +60,8 @@ static void test_radii_over_six_decades(void **state)
     network_free(&network);
 }
 
-static void test_one_throat_near_boiling(void **state)
+TEST(one_throat_near_boiling)
 {
-    (void)state;
     struct network network = lattice_network(2, 2, 2, spacing);
     const int throat = lattice_throat(&network, 0, 2);
     for (int t = 0; t < network.n_throat; t++)
@@ -83,9 +80,8 @@ static void test_one_throat_near_boiling(void **state)
 
 // All is as at room temperature, but faster by the potential, which near boiling goes
 // with the logarithm of what is left to p_g. Viscous liquid is made thinner by as much.
-static void test_networks_near_boiling(void **state)
+TEST(networks_near_boiling)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     randomise_radii(&network, spacing, 0.3, 5);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_VISCOUS; liquid++) {
@@ -114,9 +110,8 @@ static void test_networks_near_boiling(void **state)
 }
 
 // The same events at the same moments; between recorded steps the rate is the mean.
-static void test_recording_less_changes_nothing(void **state)
+TEST(recording_less_changes_nothing)
 {
-    (void)state;
     struct network network = lattice_network(7, 7, 7, spacing);
     randomise_radii(&network, spacing, 0.3, 4);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_VISCOUS; liquid++) {
@@ -145,9 +140,8 @@ static void test_recording_less_changes_nothing(void **state)
 }
 
 // What changed at each event of a large network would fill the memory.
-static void test_large_networks_are_not_recorded_whole(void **state)
+TEST(large_networks_are_not_recorded_whole)
 {
-    (void)state;
     struct network network = lattice_network(36, 36, 36, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct drying_history history;
@@ -157,17 +151,4 @@ static void test_large_networks_are_not_recorded_whole(void **state)
     assert_non_null(strstr(reason.text, "step_interval: must be above 0"));
     drying_history_free(&history);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_equal_radii_in_a_stated_order),
-        cmocka_unit_test(test_radii_over_six_decades),
-        cmocka_unit_test(test_one_throat_near_boiling),
-        cmocka_unit_test(test_networks_near_boiling),
-        cmocka_unit_test(test_recording_less_changes_nothing),
-        cmocka_unit_test(test_large_networks_are_not_recorded_whole)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

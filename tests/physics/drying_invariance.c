@@ -88,9 +88,8 @@ static void check_renumbered(enum liquid_limit liquid, double spread,
     free(throat_to);
 }
 
-static void test_numbering_does_not_matter(void **state)
+TEST(numbering_does_not_matter)
 {
-    (void)state;
     for (int all_equal = 0; all_equal < 2; all_equal++) {
         const double spread = all_equal ? 0 : 0.2;
         check_renumbered(LIQUID_INVISCID, spread, 0, false);
@@ -162,9 +161,8 @@ static void check_irregular(enum liquid_limit liquid)
     network_free(&network);
 }
 
-static void test_ties_do_not_hang_on_numbers(void **state)
+TEST(ties_do_not_hang_on_numbers)
 {
-    (void)state;
     check_irregular(LIQUID_INVISCID);
     check_irregular(LIQUID_IMMOBILE);
     check_irregular(LIQUID_VISCOUS);
@@ -178,9 +176,8 @@ static void check_scaled(enum liquid_limit liquid)
     network_free(&network);
 }
 
-static void test_unit_of_length_does_not_matter(void **state)
+TEST(unit_of_length_does_not_matter)
 {
-    (void)state;
     check_scaled(LIQUID_INVISCID);
     check_scaled(LIQUID_IMMOBILE);
 }
@@ -213,9 +210,8 @@ static struct kin *kin_when_emptied(const struct network *network,
 // Invasion percolation within a cluster knows radii and neighbours only: the rates
 // decide which cluster is ahead, but each empties in the same order and splits in the
 // same way.
-static void test_order_within_a_cluster_does_not_depend_on_the_rate(void **state)
+TEST(order_within_a_cluster_does_not_depend_on_the_rate)
 {
-    (void)state;
     struct network network = lattice_network(8, 8, 8, spacing);
     randomise_radii(&network, spacing, 0.3, 31);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -308,18 +304,16 @@ static void check_drying_is_invasion(double gravity)
     network_free(&network);
 }
 
-static void test_one_cluster_empties_as_invasion_says(void **state)
+TEST(one_cluster_empties_as_invasion_says)
 {
-    (void)state;
     check_drying_is_invasion(0);
     check_drying_is_invasion(1e7);
 }
 
 // A front large enough for threads to share it, of doubles and of floats: the same
 // bits.
-static void test_threads_do_not_matter(void **state)
+TEST(threads_do_not_matter)
 {
-    (void)state;
     int n[3] = {34, 34, 3};
     assert_true(n[0] * n[1] > SHARED_FRONT);
     struct network network = lattice_network(n[0], n[1], n[2], spacing);
@@ -340,17 +334,4 @@ static void test_threads_do_not_matter(void **state)
             drying_history_free(&history[k]);
     }
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbering_does_not_matter),
-        cmocka_unit_test(test_ties_do_not_hang_on_numbers),
-        cmocka_unit_test(test_unit_of_length_does_not_matter),
-        cmocka_unit_test(test_order_within_a_cluster_does_not_depend_on_the_rate),
-        cmocka_unit_test(test_one_cluster_empties_as_invasion_says),
-        cmocka_unit_test(test_threads_do_not_matter)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

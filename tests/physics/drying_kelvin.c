@@ -39,9 +39,8 @@ static void leave_columns(struct network *network, unsigned columns)
 }
 
 // Two tubes in series: each has its own vapour while it empties.
-static void test_tubes_in_series(void **state)
+TEST(tubes_in_series)
 {
-    (void)state;
     for (int k = 0; k < 12; k++) {
         struct network network = lattice_network(2, 2, 3, spacing);
         leave_columns(&network, 1);
@@ -87,9 +86,8 @@ static double throat_mass(double radius)
 }
 
 // Side by side, each through a layer of its own.
-static void test_tubes_in_parallel(void **state)
+TEST(tubes_in_parallel)
 {
-    (void)state;
     for (int l = 0; l < 3; l++) {
         struct network network = lattice_network(2, 2, 2, spacing);
         leave_columns(&network, 15);
@@ -111,9 +109,8 @@ static void test_tubes_in_parallel(void **state)
 
 // Two tubes side by side, joined at the bottom by a narrow throat: as long as the
 // liquid is in one piece, all of it has the vapour of the widest meniscus.
-static void test_joined_tubes(void **state)
+TEST(joined_tubes)
 {
-    (void)state;
     const double radius[] = {2e-8, 5e-9, 2e-9};
     struct network network = lattice_network(2, 2, 2, spacing);
     const int throat[] = {lattice_throat(&network, 0, 2),
@@ -193,9 +190,8 @@ static void free_pair(struct pair *pair)
 }
 
 // Radii so near each other that both dry, the narrow throat first: it has less liquid.
-static void test_two_pieces_that_both_dry(void **state)
+TEST(two_pieces_that_both_dry)
 {
-    (void)state;
     struct pair pair = make_pair(2e-8, 1.98e-8, 1);
     const struct drying_conditions conditions = kelvin_conditions(LIQUID_INVISCID);
     const double wide = drive(&conditions, 2e-8), narrow = drive(&conditions, 1.98e-8);
@@ -217,9 +213,8 @@ static void test_two_pieces_that_both_dry(void **state)
 }
 
 // The narrow throat waits, full, until the wide one is empty. Half full it fills first.
-static void test_two_pieces_of_which_one_waits(void **state)
+TEST(two_pieces_of_which_one_waits)
 {
-    (void)state;
     const struct drying_conditions conditions = kelvin_conditions(LIQUID_INVISCID);
     const double wide = drive(&conditions, 2e-8), narrow = drive(&conditions, 2e-9);
     for (int k = 0; k < 6; k++) {
@@ -253,9 +248,8 @@ static void test_two_pieces_of_which_one_waits(void **state)
 
 // One throat open above and below: its upper meniscus has less vapour than its lower,
 // by the barometric formula.
-static void test_gravity(void **state)
+TEST(gravity)
 {
-    (void)state;
     struct network network = lattice_column(1, spacing);
     struct drying_conditions conditions = kelvin_conditions(LIQUID_INVISCID);
     conditions.gravity = 1e12;
@@ -326,9 +320,8 @@ static void check_condensation(enum liquid_limit liquid)
     network_free(&network);
 }
 
-static void test_condensation_balances(void **state)
+TEST(condensation_balances)
 {
-    (void)state;
     check_condensation(LIQUID_INVISCID);
     check_condensation(LIQUID_IMMOBILE);
 }
@@ -349,9 +342,8 @@ static void check_same_order(const struct drying_history *with,
 }
 
 // As the surface tension goes to 0, all is as without, and in proportion to it.
-static void test_no_tension_is_no_effect(void **state)
+TEST(no_tension_is_no_effect)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 6, spacing);
     randomise_radii(&network, spacing, 0.5, 13);
     for (int l = 0; l < 2; l++) {
@@ -374,9 +366,8 @@ static void test_no_tension_is_no_effect(void **state)
     network_free(&network);
 }
 
-static void test_unit_of_length_does_not_matter(void **state)
+TEST(unit_of_length_does_not_matter)
 {
-    (void)state;
     for (int l = 0; l < 2; l++) {
         struct network network = lattice_network(4, 4, 5, spacing);
         randomise_radii(&network, spacing, 0.9, 17);
@@ -385,9 +376,8 @@ static void test_unit_of_length_does_not_matter(void **state)
     }
 }
 
-static void test_refusals(void **state)
+TEST(refusals)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 3, spacing);
     struct drying_conditions conditions = kelvin_conditions(LIQUID_IMMOBILE);
     const struct {
@@ -408,21 +398,4 @@ static void test_refusals(void **state)
         drying_history_free(&history);
     }
     network_free(&network);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_tubes_in_series),
-        cmocka_unit_test(test_tubes_in_parallel),
-        cmocka_unit_test(test_joined_tubes),
-        cmocka_unit_test(test_two_pieces_that_both_dry),
-        cmocka_unit_test(test_two_pieces_of_which_one_waits),
-        cmocka_unit_test(test_gravity),
-        cmocka_unit_test(test_unit_of_length_does_not_matter),
-        cmocka_unit_test(test_condensation_balances),
-        cmocka_unit_test(test_no_tension_is_no_effect),
-        cmocka_unit_test(test_refusals)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -121,9 +121,8 @@ static double time_over_liquid(double saturation, void *context)
 // At which the narrow meniscus is about half-way between both tubes' curvatures.
 static const double middle_viscosity = 1e-5;
 
-static void test_pair_at_first(void **state)
+TEST(pair_at_first)
 {
-    (void)state;
     for (int k = -4; k <= 0; k++) {
         struct pair pair = make_pair(middle_viscosity * pow(10, k));
         struct drying_history history = dry_or_fail(&pair.network, &pair.conditions);
@@ -140,9 +139,8 @@ static void test_pair_at_first(void **state)
 }
 
 // With the first power of the step at which conductances are renewed.
-static void test_pair_in_time(void **state)
+TEST(pair_in_time)
 {
-    (void)state;
     struct pair pair = make_pair(middle_viscosity);
     gsl_integration_workspace *room = gsl_integration_workspace_alloc(100);
     gsl_function function = {time_over_liquid, &pair};
@@ -225,24 +223,21 @@ static void check_limit(enum liquid_limit limit, double viscosity, double factor
     network_free(&network);
 }
 
-static void test_no_viscosity(void **state)
+TEST(no_viscosity)
 {
-    (void)state;
     check_limit(LIQUID_INVISCID, 1e-11, 0.1, 0);
     check_limit(LIQUID_INVISCID, 1e-11, 0.1, 1e11); // four times capillarity
 }
 
-static void test_all_viscosity(void **state)
+TEST(all_viscosity)
 {
-    (void)state;
     check_limit(LIQUID_IMMOBILE, 1e4, 10, 0);
 }
 
 // The exponent goes with the molar mass; so does the rate, and the pressures of the
 // flow stay if the viscosity is larger by as much.
-static void test_no_effect(void **state)
+TEST(no_effect)
 {
-    (void)state;
     struct network network = make_network((int[]){4, 4, 4}, 0.6);
     double before = 0;
     for (int k = 0; k < 3; k++) {
@@ -264,9 +259,8 @@ static void test_no_effect(void **state)
 }
 
 // From nearly no viscosity to nearly no flow: nothing is lost, above 1 or below 0.
-static void test_balances(void **state)
+TEST(balances)
 {
-    (void)state;
     struct network network = make_network((int[]){4, 4, 5}, 0.9);
     int refilled = 0;
     for (int decade = -12; decade <= 6; decade += 3) {
@@ -291,9 +285,8 @@ static void test_balances(void **state)
 
 // In air as humid as above the menisci of the pores, all alike, nothing moves: as the
 // air comes near it all rates go to 0 in proportion. Above it, it is refused.
-static void test_equilibrium(void **state)
+TEST(equilibrium)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 4, spacing);
     for (int t = 0; t < network.n_throat; t++)
         network.throat_radius[t] = 5e-9;
@@ -322,9 +315,8 @@ static void test_equilibrium(void **state)
 // So cold that menisci have 1e-8 of the vapour of flat ones and less, twice as curved
 // none to rounding: either each rate is a number, or it is said by how little they are
 // driven.
-static void test_hardly_any_vapour(void **state)
+TEST(hardly_any_vapour)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 4, spacing);
     randomise_radii(&network, 1.8e-8, 0.1, 4);
     struct drying_conditions conditions = kelvin_conditions(LIQUID_VISCOUS);
@@ -348,26 +340,9 @@ static void test_hardly_any_vapour(void **state)
     network_free(&network);
 }
 
-static void test_unit_of_length_does_not_matter(void **state)
+TEST(unit_of_length_does_not_matter)
 {
-    (void)state;
     struct network network = make_network((int[]){4, 4, 4}, 0.9);
     check_dries_alike_enlarged(&network, kelvin_conditions(LIQUID_VISCOUS));
     network_free(&network);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pair_at_first),
-        cmocka_unit_test(test_pair_in_time),
-        cmocka_unit_test(test_no_viscosity),
-        cmocka_unit_test(test_all_viscosity),
-        cmocka_unit_test(test_no_effect),
-        cmocka_unit_test(test_balances),
-        cmocka_unit_test(test_equilibrium),
-        cmocka_unit_test(test_hardly_any_vapour),
-        cmocka_unit_test(test_unit_of_length_does_not_matter)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,9 +35,8 @@ static void check_one_cluster(const struct drying_history *history)
 
 // While a front of equal throats moves down, no throat of a level empties before all
 // that lie two levels higher.
-static void test_immobile_front_is_flat(void **state)
+TEST(immobile_front_is_flat)
 {
-    (void)state;
     const int n = 6, nz = 11;
     struct network network = sealed_lattice(n, nz);
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_IMMOBILE);
@@ -57,9 +56,8 @@ static void test_immobile_front_is_flat(void **state)
     network_free(&network);
 }
 
-static void test_immobile_rate_falls_from_the_first_moment(void **state)
+TEST(immobile_rate_falls_from_the_first_moment)
 {
-    (void)state;
     struct network network = sealed_lattice(6, 11);
     randomise_radii(&network, spacing, 0.02, 11);
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_IMMOBILE);
@@ -74,9 +72,8 @@ static void test_immobile_rate_falls_from_the_first_moment(void **state)
     network_free(&network);
 }
 
-static void test_inviscid_has_clusters_and_a_first_period(void **state)
+TEST(inviscid_has_clusters_and_a_first_period)
 {
-    (void)state;
     struct network network = sealed_lattice(6, 11);
     randomise_radii(&network, spacing, 0.02, 11);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -97,9 +94,8 @@ static void test_inviscid_has_clusters_and_a_first_period(void **state)
     network_free(&network);
 }
 
-static void test_breakthrough_is_when_gas_reaches_the_far_wall(void **state)
+TEST(breakthrough_is_when_gas_reaches_the_far_wall)
 {
-    (void)state;
     struct network network = lattice_network(5, 4, 6, spacing);
     randomise_radii(&network, spacing, 0.3, 5);
     for (int wall = 0; wall < WALL_COUNT; wall++) {
@@ -123,9 +119,8 @@ static void test_breakthrough_is_when_gas_reaches_the_far_wall(void **state)
 }
 
 // Radii from 1 to 199 % of the mean: conductances differ by up to 40,000 times.
-static void test_wide_range_of_radii_dries_to_the_end(void **state)
+TEST(wide_range_of_radii_dries_to_the_end)
 {
-    (void)state;
     struct network network = lattice_network(8, 8, 8, spacing);
     randomise_radii(&network, spacing, 0.99, 23);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++) {
@@ -135,16 +130,4 @@ static void test_wide_range_of_radii_dries_to_the_end(void **state)
         drying_history_free(&history);
     }
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_immobile_front_is_flat),
-        cmocka_unit_test(test_immobile_rate_falls_from_the_first_moment),
-        cmocka_unit_test(test_inviscid_has_clusters_and_a_first_period),
-        cmocka_unit_test(test_breakthrough_is_when_gas_reaches_the_far_wall),
-        cmocka_unit_test(test_wide_range_of_radii_dries_to_the_end)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -192,36 +192,22 @@ static void check_limits(const int n[3], bool irregular)
     network_free(&network);
 }
 
-static void test_flat_and_regular(void **state)
+TEST(flat_and_regular)
 {
-    (void)state;
     check_limits((int[]){14, 2, 14}, false);
 }
 
-static void test_flat_and_irregular(void **state)
+TEST(flat_and_irregular)
 {
-    (void)state;
     check_limits((int[]){14, 2, 14}, true);
 }
 
-static void test_regular_in_space(void **state)
+TEST(regular_in_space)
 {
-    (void)state;
     check_limits((int[]){6, 5, 6}, false);
 }
 
-static void test_irregular_in_space(void **state)
+TEST(irregular_in_space)
 {
-    (void)state;
     check_limits((int[]){6, 5, 6}, true);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_flat_and_regular),
-                                       cmocka_unit_test(test_flat_and_irregular),
-                                       cmocka_unit_test(test_regular_in_space),
-                                       cmocka_unit_test(test_irregular_in_space)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

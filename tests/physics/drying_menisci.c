@@ -257,24 +257,14 @@ static void check(enum liquid_limit liquid, bool follow)
     network_free(&network);
 }
 
-static void test_throats(void **state)
+TEST(throats)
 {
-    (void)state;
     check(LIQUID_IMMOBILE, false);
     check(LIQUID_IMMOBILE, true);
 }
 
-static void test_clusters(void **state)
+TEST(clusters)
 {
-    (void)state;
     check(LIQUID_INVISCID, false);
     check(LIQUID_INVISCID, true);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_throats),
-                                       cmocka_unit_test(test_clusters)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,24 +90,21 @@ static void check_elimination(double decades, uint64_t seed)
     kron_fronts_free(&mesh);
 }
 
-static void test_every_digit_over_twelve_decades(void **state)
+TEST(every_digit_over_twelve_decades)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 5; seed++)
         check_elimination(12, seed);
 }
 
-static void test_every_digit_where_conductances_are_alike(void **state)
+TEST(every_digit_where_conductances_are_alike)
 {
-    (void)state;
     check_elimination(0, 7);
     check_elimination(1, 8);
 }
 
 // Gas that is shut in between wet sites brings nothing to the air: exactly.
-static void test_shut_in_is_exactly_zero(void **state)
+TEST(shut_in_is_exactly_zero)
 {
-    (void)state;
     struct kron_fronts mesh = kron_fronts_init(4, false);
     kron_fronts_link(&mesh, 0, 1, 1);
     kron_fronts_link(&mesh, 1, 2, 1);
@@ -189,9 +186,8 @@ static void check_kernels(const struct kernels kernels[2], bool is_rounded,
 
 // Large fronts are updated by narrow vectors or wide ones: the same digits, and near
 // what the sum is.
-static void test_width_of_vectors_does_not_matter(void **state)
+TEST_WHERE(has_avx512(), "no wide vectors here", width_of_vectors_does_not_matter)
 {
-    (void)state;
     check_kernels(
         (struct kernels[]){
             {dense_front_pass_avx2_double, dense_front_gather_avx2_double},
@@ -219,9 +215,8 @@ static struct kron_fronts chain_in_air(int n)
 
 // More sites with air than the mesh that a state is restored to had ever had: room for
 // them is made on the way.
-static void test_restored_state_has_the_same_air(void **state)
+TEST(restored_state_has_the_same_air)
 {
-    (void)state;
     enum { CHAIN = 1000 };
     struct kron_fronts mesh = chain_in_air(CHAIN);
     struct checkpoint_stream kept = stream_to_keep();
@@ -239,17 +234,4 @@ static void test_restored_state_has_the_same_air(void **state)
     free_arrays(list.array, list.count);
     kron_fronts_free(&other);
     kron_fronts_free(&mesh);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_digit_over_twelve_decades),
-        cmocka_unit_test(test_every_digit_where_conductances_are_alike),
-        cmocka_unit_test(test_shut_in_is_exactly_zero),
-        cmocka_unit_test(test_restored_state_has_the_same_air),
-        UNIT_TEST_WHERE(has_avx512(), "no wide vectors here",
-                        test_width_of_vectors_does_not_matter)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -63,17 +63,9 @@ static void check_profiles(enum liquid_limit liquid)
     network_free(&network);
 }
 
-static void test_profiles_hold_the_liquid(void **state)
+TEST(profiles_hold_the_liquid)
 {
-    (void)state;
     check_profiles(LIQUID_INVISCID);
     check_profiles(LIQUID_IMMOBILE);
     check_profiles(LIQUID_VISCOUS);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_profiles_hold_the_liquid)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -23,9 +23,8 @@ static void check_first_rate(const struct network *network,
     drying_history_free(&history);
 }
 
-static void test_first_rate(void **state)
+TEST(first_rate)
 {
-    (void)state;
     const double spacing = 5e-7;
     struct network network = lattice_network(4, 5, 6, spacing);
     randomise_radii(&network, spacing, 0.1, 1);
@@ -39,9 +38,8 @@ static void test_first_rate(void **state)
     network_free(&network);
 }
 
-static void test_imposed_empty_sides_leave_the_area_whole(void **state)
+TEST(imposed_empty_sides_leave_the_area_whole)
 {
-    (void)state;
     const double spacing = 5e-7;
     struct network network = lattice_network(6, 6, 11, spacing);
     const unsigned walls =
@@ -60,9 +58,8 @@ static void test_imposed_empty_sides_leave_the_area_whole(void **state)
     network_free(&network);
 }
 
-static void test_number_of_layers_does_not_matter_while_all_is_wet(void **state)
+TEST(number_of_layers_does_not_matter_while_all_is_wet)
 {
-    (void)state;
     const double spacing = 5e-7;
     struct network network = lattice_network(3, 3, 3, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -76,9 +73,8 @@ static void test_number_of_layers_does_not_matter_while_all_is_wet(void **state)
 
 // log() above has few digits left when a pressure is near another; log1p of the right
 // ratio has them all.
-static void test_extreme_pressures(void **state)
+TEST(extreme_pressures)
 {
-    (void)state;
     const double spacing = 5e-7;
     struct network network = lattice_network(3, 3, 3, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -94,15 +90,4 @@ static void test_extreme_pressures(void **state)
     assert_true(fabs(history.rate[0] / expected - 1) < 1e-12); // Stefan flow vanishes
     drying_history_free(&history);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_first_rate),
-        cmocka_unit_test(test_imposed_empty_sides_leave_the_area_whole),
-        cmocka_unit_test(test_number_of_layers_does_not_matter_while_all_is_wet),
-        cmocka_unit_test(test_extreme_pressures)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

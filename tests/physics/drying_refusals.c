@@ -19,9 +19,8 @@ static void check_refused(const struct network *network,
     drying_history_free(&history);
 }
 
-static void test_impossible_conditions(void **state)
+TEST(impossible_conditions)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 3, spacing);
     const struct drying_conditions good = kharaghani_conditions(LIQUID_INVISCID);
     struct drying_conditions bad;
@@ -62,9 +61,8 @@ static void test_impossible_conditions(void **state)
     network_free(&network);
 }
 
-static void test_impossible_networks(void **state)
+TEST(impossible_networks)
 {
-    (void)state;
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     struct network network = lattice_network(3, 3, 3, spacing);
     network.throat_length[7] = 0;
@@ -91,9 +89,8 @@ static void test_impossible_networks(void **state)
     network_free(&network);
 }
 
-static void test_liquid_without_a_way_out(void **state)
+TEST(liquid_without_a_way_out)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 4, spacing);
     for (int t = 0; t < network.n_throat; t++)
         if (network.throat_nodes[t][0] / 9 == 1 && network.throat_nodes[t][1] / 9 == 2)
@@ -107,9 +104,8 @@ static void test_liquid_without_a_way_out(void **state)
 }
 
 // From no boundary layer to speak of to one ten million times thicker than the network.
-static void test_boundary_layers_of_any_thickness(void **state)
+TEST(boundary_layers_of_any_thickness)
 {
-    (void)state;
     struct network network = lattice_network(4, 4, 6, spacing);
     randomise_radii(&network, spacing, 0.2, 3);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++)
@@ -122,15 +118,4 @@ static void test_boundary_layers_of_any_thickness(void **state)
             drying_history_free(&history);
         }
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_impossible_conditions),
-        cmocka_unit_test(test_impossible_networks),
-        cmocka_unit_test(test_liquid_without_a_way_out),
-        cmocka_unit_test(test_boundary_layers_of_any_thickness)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,9 +53,8 @@ static void compare_rest(const struct drying_history *whole,
     }
 }
 
-static void test_on_from_the_middle(void **state)
+TEST(on_from_the_middle)
 {
-    (void)state;
     struct network network = lattice_network(6, 6, 6, spacing);
     randomise_radii(&network, spacing, 0.3, 5);
     for (int limit = LIQUID_INVISCID; limit <= LIQUID_VISCOUS; limit++)
@@ -147,18 +146,16 @@ static void check_gas_has_come_in(bool trapping)
     network_free(&network);
 }
 
-static void test_gas_has_come_in(void **state)
+TEST(gas_has_come_in)
 {
-    (void)state;
     check_gas_has_come_in(false);
     check_gas_has_come_in(true);
 }
 
 // One column of N throats, half of the third gone: the layer, two throats, and that is
 // all that resists until the third is empty.
-static void test_tube_half_empty(void **state)
+TEST(tube_half_empty)
 {
-    (void)state;
     const int n = 6;
     struct network network = lattice_column(n, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -183,9 +180,8 @@ static void test_tube_half_empty(void **state)
     network_free(&network);
 }
 
-static void test_more_than_full_is_refused(void **state)
+TEST(more_than_full_is_refused)
 {
-    (void)state;
     struct network network = lattice_network(2, 2, 2, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     const double wrong[] = {0, -1, 1.5, NAN};
@@ -194,14 +190,4 @@ static void test_more_than_full_is_refused(void **state)
         check_refused(&network, &conditions, "start_saturation");
     }
     network_free(&network);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_on_from_the_middle),
-        cmocka_unit_test(test_gas_has_come_in), cmocka_unit_test(test_tube_half_empty),
-        cmocka_unit_test(test_more_than_full_is_refused)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,9 +19,8 @@ static double middle_height(const struct network *network, int throat)
 }
 
 // Equal tubes joined at the bottom: their levels fall together, down to the bottom.
-static void test_gravity_levels_equal_tubes(void **state)
+TEST(gravity_levels_equal_tubes)
 {
-    (void)state;
     const int n_column = 9;
     struct network network = lattice_network(3, 3, 7, spacing);
     for (int t = 0; t < network.n_throat; t++) {
@@ -84,9 +83,8 @@ static int first_of_wells(enum liquid_limit liquid, double factor, double angle)
     return first == lower;
 }
 
-static void test_gravity_against_capillarity(void **state)
+TEST(gravity_against_capillarity)
 {
-    (void)state;
     const enum liquid_limit liquids[] = {LIQUID_INVISCID, LIQUID_VISCOUS};
     for (int k = 0; k < 2; k++)
         for (double angle = 0; angle < 90; angle += 40) {
@@ -96,9 +94,8 @@ static void test_gravity_against_capillarity(void **state)
 }
 
 // One column: the resistance of each empty throat is larger by 1 + D/D_K.
-static void test_knudsen_resistance(void **state)
+TEST(knudsen_resistance)
 {
-    (void)state;
     const double small = 5e-7;
     const int n = 6;
     struct network network = lattice_network(2, 2, n + 1, small);
@@ -136,9 +133,8 @@ static bool same(const struct drying_history *a, const struct drying_history *b)
 }
 
 // Properties of the liquid that nothing asks for change no bit.
-static void test_off_leaves_no_trace(void **state)
+TEST(off_leaves_no_trace)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     randomise_radii(&network, spacing, 0.3, 3);
     const enum liquid_limit liquids[] = {LIQUID_INVISCID, LIQUID_IMMOBILE};
@@ -171,9 +167,8 @@ static int most_clusters(const struct drying_history *history)
 
 // A tolerance knows of the order that gravity gives, among many clusters: times within
 // it, and the contact angle matters as it does without.
-static void test_gravity_with_a_tolerance(void **state)
+TEST(gravity_with_a_tolerance)
 {
-    (void)state;
     const double small = 5e-7;
     struct network network = lattice_network(12, 11, 8, small);
     randomise_radii(&network, small, 0.5, 4);
@@ -199,16 +194,4 @@ static void test_gravity_with_a_tolerance(void **state)
         drying_history_free(&other);
     }
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_gravity_levels_equal_tubes),
-        cmocka_unit_test(test_gravity_against_capillarity),
-        cmocka_unit_test(test_knudsen_resistance),
-        cmocka_unit_test(test_gravity_with_a_tolerance),
-        cmocka_unit_test(test_off_leaves_no_trace)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

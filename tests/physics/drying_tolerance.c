@@ -98,9 +98,8 @@ static void check_tolerance(const struct network *network,
     assert_true(errors.rate <= conditions.vapour_tolerance);
 }
 
-static void test_errors_are_below_the_tolerance(void **state)
+TEST(errors_are_below_the_tolerance)
 {
-    (void)state;
     struct network network = lattice_network(20, 18, 6, spacing);
     randomise_radii(&network, spacing, 0.5, 3);
     for (int liquid = LIQUID_INVISCID; liquid <= LIQUID_IMMOBILE; liquid++) {
@@ -113,9 +112,8 @@ static void test_errors_are_below_the_tolerance(void **state)
     network_free(&network);
 }
 
-static void test_conductances_over_twelve_decades(void **state)
+TEST(conductances_over_twelve_decades)
 {
-    (void)state;
     struct network network = lattice_network(15, 14, 4, spacing);
     uint64_t seed = 12;
     for (int t = 0; t < network.n_throat; t++)
@@ -126,9 +124,8 @@ static void test_conductances_over_twelve_decades(void **state)
 
 // Through the whole run: the balances that dry_and_check asks for, and times near the
 // exact ones.
-static void test_whole_runs(void **state)
+TEST(whole_runs)
 {
-    (void)state;
     struct network network = lattice_network(16, 15, 5, spacing);
     randomise_radii(&network, spacing, 0.5, 4);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -145,14 +142,4 @@ static void test_whole_runs(void **state)
     drying_history_free(&history);
     drying_history_free(&again);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_errors_are_below_the_tolerance),
-        cmocka_unit_test(test_conductances_over_twelve_decades),
-        cmocka_unit_test(test_whole_runs)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -54,18 +54,16 @@ static void check_chain(double spread, enum liquid_limit liquid)
     network_free(&network);
 }
 
-static void test_chain_is_resistances_in_series(void **state)
+TEST(chain_is_resistances_in_series)
 {
-    (void)state;
     check_chain(0.3, LIQUID_INVISCID);
     check_chain(0.3, LIQUID_IMMOBILE);
 }
 
 // Under a vanishing boundary layer the time of a tube is n (n-1) / 2 equal steps:
 // Stefan's law of the square of the depth.
-static void test_tube_dries_with_the_square_of_its_length(void **state)
+TEST(tube_dries_with_the_square_of_its_length)
 {
-    (void)state;
     const int n = 64;
     struct network network = lattice_network(2, 2, n + 1, spacing);
     keep_columns(&network, 0);
@@ -80,9 +78,8 @@ static void test_tube_dries_with_the_square_of_its_length(void **state)
     network_free(&network);
 }
 
-static void test_widest_tube_first(void **state)
+TEST(widest_tube_first)
 {
-    (void)state;
     const int n = 9;
     struct network network = lattice_network(2, 2, n + 1, spacing);
     keep_columns(&network, -1);
@@ -111,14 +108,4 @@ static void test_widest_tube_first(void **state)
     }
     drying_history_free(&history);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_chain_is_resistances_in_series),
-        cmocka_unit_test(test_tube_dries_with_the_square_of_its_length),
-        cmocka_unit_test(test_widest_tube_first)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

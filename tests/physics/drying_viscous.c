@@ -57,9 +57,8 @@ static double first_loss(const struct network *network,
 // The narrow tube's meniscus stays as long as the difference of capillary pressures
 // drives through all the throats what evaporates from it; beyond, it recedes at the
 // rest.
-static void test_two_tubes(void **state)
+TEST(two_tubes)
 {
-    (void)state;
     struct network network = two_tubes(0.8);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
     const int wide = lattice_throat(&network, 4 * (DEPTH - 1), 2);
@@ -90,9 +89,8 @@ static void test_two_tubes(void **state)
 
 // While only the wide tube's meniscus moves, pressure falls from it to the narrow one
 // by what evaporates there times the resistances passed.
-static void test_pressures_along_a_chain(void **state)
+TEST(pressures_along_a_chain)
 {
-    (void)state;
     struct network network = two_tubes(0.8);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
     const double full = 1;
@@ -121,9 +119,8 @@ static void test_pressures_along_a_chain(void **state)
 
 // As conductances are renewed more often, the time at which the first throat has
 // emptied goes to a limit with the first power of the step.
-static void test_step_converges(void **state)
+TEST(step_converges)
 {
-    (void)state;
     struct network network = two_tubes(0.8);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
     conditions.viscosity = 3e-3;
@@ -174,24 +171,21 @@ static void check_limit(enum liquid_limit limit, double viscosity, double tolera
     network_free(&network);
 }
 
-static void test_vanishing_viscosity_is_inviscid(void **state)
+TEST(vanishing_viscosity_is_inviscid)
 {
-    (void)state;
     check_limit(LIQUID_INVISCID, 1e-18, 1e-12);
 }
 
-static void test_great_viscosity_is_immobile(void **state)
+TEST(great_viscosity_is_immobile)
 {
-    (void)state;
     // At a million times that of water, flow is still a hundredth of evaporation.
     check_limit(LIQUID_IMMOBILE, 1e4, 1e-5);
     check_limit(LIQUID_IMMOBILE, 1e7, 1e-8);
 }
 
 // All throats equal: menisci that are alike exchange nothing, and all dries.
-static void test_equal_throats(void **state)
+TEST(equal_throats)
 {
-    (void)state;
     struct network network = lattice_network(5, 5, 5, spacing);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
     for (int k = -18; k <= 0; k += 6) {
@@ -203,9 +197,8 @@ static void test_equal_throats(void **state)
 }
 
 // Between them, decade by decade, everything balances, and throats refill.
-static void test_eighteen_decades(void **state)
+TEST(eighteen_decades)
 {
-    (void)state;
     struct network network = lattice_network(4, 4, 6, spacing);
     randomise_radii(&network, spacing, 0.5, 5);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
@@ -224,9 +217,8 @@ static void test_eighteen_decades(void **state)
 
 // Pieces of one throat each have nothing to flow to: viscosity changes nothing, over
 // twelve decades.
-static void test_throats_alone(void **state)
+TEST(throats_alone)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 2, spacing);
     randomise_radii(&network, spacing, 0.3, 4);
     for (int t = 0; t < network.n_throat; t++)
@@ -252,9 +244,8 @@ static void test_throats_alone(void **state)
 
 // Radii over six decades, conductances over twenty-four: balances close all the same.
 // Times do not all differ, as volumes are over twelve decades.
-static void test_radii_over_six_decades(void **state)
+TEST(radii_over_six_decades)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct network network = lattice_network(6, 6, 6, spacing);
         uint64_t random = seed;
@@ -275,20 +266,4 @@ static void test_radii_over_six_decades(void **state)
         }
         network_free(&network);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_two_tubes),
-        cmocka_unit_test(test_pressures_along_a_chain),
-        cmocka_unit_test(test_step_converges),
-        cmocka_unit_test(test_vanishing_viscosity_is_inviscid),
-        cmocka_unit_test(test_great_viscosity_is_immobile),
-        cmocka_unit_test(test_equal_throats),
-        cmocka_unit_test(test_eighteen_decades),
-        cmocka_unit_test(test_throats_alone),
-        cmocka_unit_test(test_radii_over_six_decades)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -39,9 +39,8 @@ static double excess(int n, double R)
     return gas - R * (n * R * turned + n * (angle - 2 * wetted));
 }
 
-static void touching_rods(void **state)
+TEST(touching_rods)
 {
-    (void)state;
     for (int n = 3; n <= 4; n++) {
         double low = 1e-3, high = 0.6;
         for (int k = 0; k < 100; k++) {
@@ -57,9 +56,8 @@ static void touching_rods(void **state)
 
 // Discs far apart: gas enters when the menisci between two of them meet, half a circle
 // across the gap.
-static void far_discs(void **state)
+TEST(far_discs)
 {
-    (void)state;
     struct section_grain grain[MOST];
     struct section_gap gap[MOST];
     const struct open_section section = regular(4, 0.05, 1, grain, gap);
@@ -67,9 +65,8 @@ static void far_discs(void **state)
 }
 
 // Half a square, cut along a mirror, is as the square.
-static void mirrors(void **state)
+TEST(mirrors)
 {
-    (void)state;
     struct section_grain grain[MOST], half_grain[MOST];
     struct section_gap gap[MOST], half_gap[MOST];
     const struct open_section whole = regular(4, 1, 2, grain, gap);
@@ -91,9 +88,8 @@ static void mirrors(void **state)
 }
 
 // Liquid that wets worse lets gas in at a lower pressure: cos(theta) / radius falls.
-static void wetting(void **state)
+TEST(wetting)
 {
-    (void)state;
     struct section_grain grain[MOST];
     struct section_gap gap[MOST];
     const struct open_section section = regular(3, 1, 2.1, grain, gap);
@@ -106,9 +102,8 @@ static void wetting(void **state)
     }
 }
 
-static void units(void **state)
+TEST(units)
 {
-    (void)state;
     struct section_grain grain[MOST], small_grain[MOST];
     struct section_gap gap[MOST], small_gap[MOST];
     const struct open_section section = regular(3, 1, 2.1, grain, gap);
@@ -116,13 +111,4 @@ static void units(void **state)
     const struct open_section small =
         regular(3, unit, 2.1 * unit, small_grain, small_gap);
     assert_close(entry_radius(&small, 0.3), unit * entry_radius(&section, 0.3), 1e-11);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(touching_rods), cmocka_unit_test(far_discs),
-        cmocka_unit_test(mirrors), cmocka_unit_test(wetting), cmocka_unit_test(units)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,9 +6,8 @@
 // A row of N held at the first: pulled it stretches by F/(k^n A) a bond; pushed,
 // contacts help with k/2. Loaded across, the sums over its hinges are exact: each bends
 // under the moment of what is beyond it and shears.
-static void a_row_as_its_hinges_say(void **state)
+TEST(a_row_as_its_hinges_say)
 {
-    (void)state;
     enum { N = 8 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
@@ -63,9 +62,8 @@ static void a_row_as_its_hinges_say(void **state)
 }
 
 // At loads so small that grains do not turn to speak of.
-static void a_block_as_the_discrete_elements(void **state)
+TEST(a_block_as_the_discrete_elements)
 {
-    (void)state;
     struct block *block = new_block();
     struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK], still[BLOCK], moved[BLOCK];
@@ -88,9 +86,8 @@ static void a_block_as_the_discrete_elements(void **state)
 
 // Every grain feels no more than the tolerance; the contacts' forces on each, added up
 // here, are the load.
-static void forces_balance(void **state)
+TEST(forces_balance)
 {
-    (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.5;
     struct quasi_static *equilibrium = make_equilibrium(&block->setup);
@@ -115,9 +112,8 @@ static void forces_balance(void **state)
 }
 
 // What is left where one does not look for more: [K 4.20] from the forces of contacts.
-static void the_unbalanced_ratio(void **state)
+TEST(the_unbalanced_ratio)
 {
-    (void)state;
     struct block *block = new_block();
     block->setup.tolerance = 0.3;
     struct quasi_static *equilibrium = make_equilibrium(&block->setup);
@@ -144,9 +140,8 @@ static void the_unbalanced_ratio(void **state)
 
 // What rounding leaves when the load is gone is not measured by what it leaves in
 // joints.
-static void nothing_is_settled(void **state)
+TEST(nothing_is_settled)
 {
-    (void)state;
     struct block *block = new_block();
     struct quasi_static *equilibrium = make_equilibrium(&block->setup);
     struct vector force[BLOCK];
@@ -162,9 +157,8 @@ static void nothing_is_settled(void **state)
 }
 
 // Of bonds in a row the one at its strength breaks, and no other: what it held leaves.
-static void one_bond_breaks(void **state)
+TEST(one_bond_breaks)
 {
-    (void)state;
     enum { N = 5 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
@@ -193,9 +187,8 @@ static void one_bond_breaks(void **state)
 }
 
 // A grain pressed on the wall sinks in by F/k, as a wall is rigid [K 4.22].
-static void a_wall_is_rigid(void **state)
+TEST(a_wall_is_rigid)
 {
-    (void)state;
     struct packing packing = new_packing(1, 0);
     packing.position[0] = (struct vector){RADIUS, RADIUS, RADIUS};
     packing.upper = (struct vector){2 * RADIUS, 2 * RADIUS, 2 * RADIUS};
@@ -235,9 +228,8 @@ static struct vector net_force(const struct block *block,
 
 // What the grains carry to the held ones is the load at every step: with friction, slip
 // and bonds that break.
-static void the_whole_balances(void **state)
+TEST(the_whole_balances)
 {
-    (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.5;
     block->setup.tolerance = 1e-8;
@@ -262,9 +254,8 @@ static void the_whole_balances(void **state)
 
 // Turned by a quarter about the vertical, loads move grains the same way turned, slip
 // and all: no direction of the joints' own is left in what comes out.
-static void a_turned_block_answers_turned(void **state)
+TEST(a_turned_block_answers_turned)
 {
-    (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.1;
     struct quasi_static *straight = make_equilibrium(&block->setup),
@@ -296,9 +287,8 @@ static void a_turned_block_answers_turned(void **state)
 
 // Every bond far past its strength at once: those that hold break, all are counted, and
 // what hung on them leaves, whole where nothing holds it back.
-static void every_bond_breaks(void **state)
+TEST(every_bond_breaks)
 {
-    (void)state;
     struct block *block = new_block();
     block->setup.material.friction = 0.5;
     block->setup.bond.normal_strength = block->setup.bond.shear_strength = 1e-3;
@@ -329,9 +319,8 @@ static void every_bond_breaks(void **state)
 
 // Bonds from a millionth to a million times as stiff as contacts: the row is pushed
 // together, sheared and let go.
-static void stiffnesses_over_twelve_decades(void **state)
+TEST(stiffnesses_over_twelve_decades)
 {
-    (void)state;
     enum { N = 6 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     const uint8_t fixed[N] = {1};
@@ -357,9 +346,8 @@ static void stiffnesses_over_twelve_decades(void **state)
 }
 
 // A block of them, with friction: at rest, and the whole in balance.
-static void a_block_over_twelve_decades(void **state)
+TEST(a_block_over_twelve_decades)
 {
-    (void)state;
     for (int decade = -6; decade <= 6; decade++) {
         struct block *block = new_block();
         const double glue = contact_stiffness / 2 * pow(10, decade) / bond_area();
@@ -386,9 +374,8 @@ static void a_block_over_twelve_decades(void **state)
 
 // A chain without bonds, loaded across, holds nothing: it leaves, and the grain that is
 // held stays. So does a grain that touches no other.
-static void a_mechanism_leaves(void **state)
+TEST(a_mechanism_leaves)
 {
-    (void)state;
     enum { N = 5 };
     struct packing packing = cubic_lattice(N, 1, 1, false);
     packing.n_bond = 0;
@@ -412,9 +399,8 @@ static void a_mechanism_leaves(void **state)
 // Grains 2 and 3 beside grain 1 turn it about its bond with the held one by a couple of
 // 4 f R; their own bonds bend under f R. Either breaks at M r / J or M r / I
 // [K 4.41, 4.42].
-static void twist_and_bending_break(void **state)
+TEST(twist_and_bending_break)
 {
-    (void)state;
     struct packing packing = new_packing(4, 3);
     const struct vector place[4] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, -2, 0}};
     for (int i = 0; i < 4; i++)
@@ -448,26 +434,4 @@ static void twist_and_bending_break(void **state)
         }
     }
     packing_free(&packing);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_row_as_its_hinges_say),
-        cmocka_unit_test(a_block_as_the_discrete_elements),
-        cmocka_unit_test(forces_balance),
-        cmocka_unit_test(the_unbalanced_ratio),
-        cmocka_unit_test(nothing_is_settled),
-        cmocka_unit_test(the_whole_balances),
-        cmocka_unit_test(a_turned_block_answers_turned),
-        cmocka_unit_test(one_bond_breaks),
-        cmocka_unit_test(every_bond_breaks),
-        cmocka_unit_test(stiffnesses_over_twelve_decades),
-        cmocka_unit_test(a_block_over_twelve_decades),
-        cmocka_unit_test(a_mechanism_leaves),
-        cmocka_unit_test(a_wall_is_rigid),
-        cmocka_unit_test(twist_and_bending_break),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -76,9 +76,8 @@ static double grip(void) // N that both contacts of a grain hold
 // A grain between two, bonded to them, under a load across that comes and goes: a
 // spring beside one that slides. Its two springs, as its shear spring's end, follow the
 // load; to and fro, any way across, in steps of any size.
-static void a_loop_of_hysteresis(void **state)
+TEST(a_loop_of_hysteresis)
 {
-    (void)state;
     uint8_t fixed[3];
     struct packing packing = pressed_rows(1, fixed, across);
     struct quasi_static *equilibrium = make(&packing, fixed, false, INFINITY);
@@ -109,9 +108,8 @@ static void a_loop_of_hysteresis(void **state)
 // under this load, nor as it lasts (nothing where rest is found at once, not by a way
 // in time as here). What it grows by goes through both bonds, and through the contact
 // as far as their twist lets the grain turn. docs/equilibrium.md says so.
-static void a_contact_that_closes(void **state)
+TEST(a_contact_that_closes)
 {
-    (void)state;
     const uint8_t fixed[4] = {1, 0, 1, 1};
     struct packing packing = new_packing(4, 2);
     const double gap = 1e-3 * RADIUS, aside = 2.01 * RADIUS, contact = stiffness / 2;
@@ -166,9 +164,8 @@ static void row_that_slides(double pull, int slid, double move[ROW])
 
 // Drawn at its end a row slides from there on, as far as what has not slid yet holds:
 // the front is where the elastic rest carries just what a grain's contacts can.
-static void a_front_of_slip(void **state)
+TEST(a_front_of_slip)
 {
-    (void)state;
     uint8_t fixed[3 * ROW];
     struct packing packing = pressed_rows(ROW, fixed, along);
     struct quasi_static *equilibrium = make(&packing, fixed, false, INFINITY);
@@ -192,9 +189,8 @@ static void a_front_of_slip(void **state)
 
 // A block of bonded grains on the wall holds on a slope less steep than its friction,
 // however its weight is borne, and finds no rest on a steeper one.
-static void a_block_on_a_slope(void **state)
+TEST(a_block_on_a_slope)
 {
-    (void)state;
     enum { N = 18 };
     struct packing packing = cubic_lattice(3, 3, 2, false);
     const uint8_t fixed[N] = {0};
@@ -216,9 +212,8 @@ static void a_block_on_a_slope(void **state)
 }
 
 // Where its bonds break as it slides, a load is without rest once, not once a bond.
-static void a_load_is_without_rest_once(void **state)
+TEST(a_load_is_without_rest_once)
 {
-    (void)state;
     enum { N = 18, LOADS = 3 };
     struct packing packing = cubic_lattice(3, 3, 2, false);
     const uint8_t fixed[N] = {0};
@@ -241,9 +236,8 @@ enum { SIDE = 3, HIGH = 4, BLOCK = SIDE * SIDE * HIGH };
 
 // Grains numbered from the other end, so joints in the other order, move alike where
 // contacts slip and grains part.
-static void any_order_of_joints(void **state)
+TEST(any_order_of_joints)
 {
-    (void)state;
     struct packing straight = cubic_lattice(SIDE, SIDE, HIGH, false);
     struct packing reversed = cubic_lattice(SIDE, SIDE, HIGH, false);
     uint8_t fixed[2][BLOCK];
@@ -283,9 +277,8 @@ static void any_order_of_joints(void **state)
 // Judged by a thousandth of its springs a contact does what it does, where they pulled
 // so before: a solution is the same. One that was open slides, the way its spring lies,
 // where it does so by itself.
-static void slip_that_is_judged_softly(void **state)
+TEST(slip_that_is_judged_softly)
 {
-    (void)state;
     struct contact_pair pair = {
         .normal_stiffness = 1,
         .shear_stiffness = 0.8,
@@ -315,17 +308,4 @@ static void slip_that_is_judged_softly(void **state)
     assert_int_equal(soft.contact.state, CONTACT_SLIPPING);
     assert_true(fabs(soft.load[1] - 0.6 * friction) <= 1e-12);
     assert_true(fabs(soft.load[2] - 0.8 * friction) <= 1e-12);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_loop_of_hysteresis),
-                                       cmocka_unit_test(a_contact_that_closes),
-                                       cmocka_unit_test(a_front_of_slip),
-                                       cmocka_unit_test(a_block_on_a_slope),
-                                       cmocka_unit_test(a_load_is_without_rest_once),
-                                       cmocka_unit_test(any_order_of_joints),
-                                       cmocka_unit_test(slip_that_is_judged_softly)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -115,9 +115,8 @@ static void in_pieces(const struct scene *scene, int between)
     free_block(block);
 }
 
-static void the_same_bytes(void **state)
+TEST(the_same_bytes)
 {
-    (void)state;
     const struct scene scene[] = {
         {"small, nothing breaks", false, false, DEM_PARALLEL_BOND, 0.5, INFINITY, 2e-9},
         {"large, nothing breaks", true, false, DEM_PARALLEL_BOND, 0.5, INFINITY, 1e-7},
@@ -131,11 +130,4 @@ static void the_same_bytes(void **state)
     for (size_t k = 0; k < sizeof scene / sizeof *scene; k++)
         for (int between = 1; between <= 3; between += 2)
             in_pieces(&scene[k], between);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_same_bytes)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("equilibrium kept", tests, NULL, NULL);
 }

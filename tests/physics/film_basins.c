@@ -44,9 +44,8 @@ static struct film_basins *basins_of_row(void)
 }
 
 // Floating clusters have no inflow at all, and belong to the node beside them.
-static void test_each_site_belongs_to_what_brings_most(void **state)
+TEST(each_site_belongs_to_what_brings_most)
 {
-    (void)state;
     struct film_basins *basins = basins_of_row();
     static const int basin[N] = {[B] = 1, [AT_B] = 1, [MIDDLE] = 1, [RIGHT] = 1};
     for (int i = 0; i < N; i++)
@@ -60,9 +59,8 @@ static void test_each_site_belongs_to_what_brings_most(void **state)
 // B's next throat is narrower: its gap is 3. The floating cluster, whose gap is 0.375,
 // supplies, and levels in B's basin fall by that, so that films no longer reach the
 // middle. When B comes to a wide throat again, levels rise.
-static void test_nearest_to_its_least_supplies(void **state)
+TEST(nearest_to_its_least_supplies)
 {
-    (void)state;
     struct film_basins *basins = basins_of_row();
     film_basins_set(basins, B, 1, 3);
     assert_int_equal(film_basins_supplier(basins, 1), AT_B);
@@ -76,9 +74,8 @@ static void test_nearest_to_its_least_supplies(void **state)
 }
 
 // What has been set twice, or taken out, does not supply by what it was before.
-static void test_basin_without_clusters(void **state)
+TEST(basin_without_clusters)
 {
-    (void)state;
     struct film_basins *basins = basins_of_row();
     film_basins_set(basins, A, 0, 2);
     film_basins_set(basins, A, 0, 0.5);
@@ -89,15 +86,4 @@ static void test_basin_without_clusters(void **state)
     assert_int_equal(film_basins_supplier(basins, 0), -1);
     assert_int_equal(film_basins_supplier(basins, 1), B);
     film_basins_free(basins);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_each_site_belongs_to_what_brings_most),
-        cmocka_unit_test(test_nearest_to_its_least_supplies),
-        cmocka_unit_test(test_basin_without_clusters),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,9 +57,8 @@ static void check(const struct film_flow *flow, int reach)
 }
 
 // First all sites but the cluster are not held, then those of the strip before.
-static void test_reach_of_films_along_a_strip(void **state)
+TEST(reach_of_films_along_a_strip)
 {
-    (void)state;
     static double taken[N], least[N], surplus[N];
     static bool held[N] = {true};
     static struct compensated level[N];
@@ -90,9 +89,8 @@ static void test_reach_of_films_along_a_strip(void **state)
 // order; a cluster at one end feeds them all. Whatever it is made of, the flow balances
 // at every site, and the source supplies what all take. The floating clusters have some
 // 150 links each; where they are no part of the factor it takes 48 iterations, not 25.
-static void test_clusters_with_many_links(void **state)
+TEST(clusters_with_many_links)
 {
-    (void)state;
     enum { HUBS = 40, ROW = 6000, ALL = 1 + HUBS + ROW };
     static double taken[ALL], least[ALL] = {1}, surplus[ALL];
     static bool held[ALL] = {true};
@@ -136,14 +134,4 @@ static void test_clusters_with_many_links(void **state)
     assert_true(flow.iterations < 35);
     film_factor_free(factor);
     conductance_matrix_free(&matrix);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_reach_of_films_along_a_strip),
-        cmocka_unit_test(test_clusters_with_many_links),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -52,9 +52,8 @@ static bool overlap(const struct corner *a, const struct corner *b)
     return distance(a->at, b->at) < a->radius + b->radius;
 }
 
-static void test_three_grains(void **state)
+TEST(three_grains)
 {
-    (void)state;
     uint64_t seed = 7;
     int sticking_out = 0;
     for (int facet = 0; facet < 200;) {
@@ -86,9 +85,8 @@ static void test_three_grains(void **state)
 
 // A grain by a wall, a small one farther from it: the large one reaches past the line
 // from the small one to the wall.
-static void test_two_grains_and_a_wall(void **state)
+TEST(two_grains_and_a_wall)
 {
-    (void)state;
     const struct vector down = {0, 0, -1};
     const struct corner corner[3] = {{.at = {0, 0, 1}, .radius = 1},
                                      {.at = {0.5, 0.3, 2.2}, .radius = 0.1},
@@ -103,14 +101,4 @@ static void test_two_grains_and_a_wall(void **state)
         found.sector[1],
         share(&corner[1], scale(-1, to), down, corner[0].at, add(corner[0].at, down)),
         1e-8);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_three_grains),
-        cmocka_unit_test(test_two_grains_and_a_wall),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -89,9 +89,8 @@ static double *volumes(const struct grains *grains, const struct cells *cells)
     return volume;
 }
 
-static void opening_is_the_derivative_of_the_volume(void **state)
+TEST(opening_is_the_derivative_of_the_volume)
 {
-    (void)state;
     struct packing packing = {.n_particle = N, .upper = {1, 1, 1}};
     struct vector position[N], velocity[N];
     double radius[N];
@@ -133,12 +132,4 @@ static void opening_is_the_derivative_of_the_volume(void **state)
     throats_free(&throats);
     cells_free(&cells);
     grains_free(&grains);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(opening_is_the_derivative_of_the_volume)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

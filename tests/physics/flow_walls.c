@@ -139,9 +139,8 @@ static double farthest_centre(const struct grains *grains, const struct cells *c
     return farthest;
 }
 
-static void test_walls_are_the_limit_of_spheres(void **state)
+TEST(walls_are_the_limit_of_spheres)
 {
-    (void)state;
     struct packing packing = some_packing();
     struct grains grains;
     struct cells cells;
@@ -171,12 +170,4 @@ static void test_walls_are_the_limit_of_spheres(void **state)
     cells_free(&cells);
     grains_free(&grains);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_walls_are_the_limit_of_spheres)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,9 +14,8 @@ static double of(enum fluid fluid, enum fluid_property property, double temperat
 
 // IAPWS-95 (Wagner and Pruss, J. Phys. Chem. Ref. Data 31 (2002) 387, table 13.1), to
 // the digits printed there; at 300 K IAPWS-IF97, R7-97(2012), table 35.
-static void water_has_the_saturation_pressure_of_iapws_95(void **state)
+TEST(water_has_the_saturation_pressure_of_iapws_95)
 {
-    (void)state;
     static const double value[][2] = {
         {273.16, 611.657}, {280, 991.8}, {300, 3536.58941}, {310, 6231},
         {320, 10546},      {330, 17213}, {340, 27188},      {350, 41682},
@@ -27,9 +26,8 @@ static void water_has_the_saturation_pressure_of_iapws_95(void **state)
 }
 
 // IAPWS R1-76(2014), table 1: mN/m at degrees Celsius, to the digits printed.
-static void water_has_the_surface_tension_of_iapws(void **state)
+TEST(water_has_the_surface_tension_of_iapws)
 {
-    (void)state;
     static const double value[][2] = {
         {0.01, 75.65}, {5, 74.94},  {10, 74.22}, {15, 73.49}, {20, 72.74},
         {25, 71.97},   {30, 71.19}, {40, 69.60}, {50, 67.94}, {60, 66.24},
@@ -41,9 +39,8 @@ static void water_has_the_surface_tension_of_iapws(void **state)
 
 // CRC Handbook of Chemistry and Physics, 86th ed., 6-2 (IAPWS-95 and the viscosity of
 // IAPWS): degrees Celsius, kg/m3 and uPa s.
-static void water_is_as_dense_and_viscous_as_the_tables_say(void **state)
+TEST(water_is_as_dense_and_viscous_as_the_tables_say)
 {
-    (void)state;
     static const double value[][3] = {
         {0.01, 999.8, 1791}, {10, 999.7, 1306},     {20, 998.2, 1002},
         {30, 995.6, 797.4},  {40, 992.2, 652.7},    {50, 988.0, 546.5},
@@ -61,9 +58,8 @@ static void water_is_as_dense_and_viscous_as_the_tables_say(void **state)
 }
 
 // Boiling points at 101325 Pa (CRC Handbook).
-static void liquids_boil_where_they_should(void **state)
+TEST(liquids_boil_where_they_should)
 {
-    (void)state;
     static const struct {
         enum fluid fluid;
         double temperature;
@@ -84,9 +80,8 @@ static void liquids_boil_where_they_should(void **state)
 
 // Reference equations of state (Schroeder et al. 2014 for ethanol, de Reuck and Craven
 // 1993 for methanol, Lemmon and Span 2006 for acetone and toluene), at saturation.
-static void liquids_are_as_their_equations_of_state_have_them(void **state)
+TEST(liquids_are_as_their_equations_of_state_have_them)
 {
-    (void)state;
     static const struct {
         enum fluid fluid;
         double temperature, pressure, density;
@@ -110,9 +105,8 @@ static void liquids_are_as_their_equations_of_state_have_them(void **state)
 // for the densities at 293.15 or 298.15 K the CRC Handbook: K, kg/m3, mPa s. The
 // table's isopropanol at its boiling point is 1.1 % denser than that of DIPPR (724
 // kg/m3) as well.
-static void liquids_are_as_dense_and_viscous_as_the_tables_say(void **state)
+TEST(liquids_are_as_dense_and_viscous_as_the_tables_say)
 {
-    (void)state;
     static const struct {
         enum fluid fluid;
         double temperature, density, viscosity; // NAN: not in the table
@@ -144,9 +138,8 @@ static void liquids_are_as_dense_and_viscous_as_the_tables_say(void **state)
 
 // Jasper, J. Phys. Chem. Ref. Data 1 (1972) 841: sigma = a - b t, mN/m, degrees
 // Celsius.
-static void surface_tensions_are_near_those_of_jasper(void **state)
+TEST(surface_tensions_are_near_those_of_jasper)
 {
-    (void)state;
     static const struct {
         enum fluid fluid;
         double a, b, most; // off, as a share
@@ -167,9 +160,8 @@ static void surface_tensions_are_near_those_of_jasper(void **state)
 // Measured in air: Marrero and Mason (1972) as in the CRC Handbook for water at
 // 293.15 and 373.15 K; Perry's Chemical Engineers' Handbook at 273.15 K, both at
 // 101325 Pa; Welty, Wicks and Wilson (1984), as D p in Pa m2/s.
-static void vapours_diffuse_as_measured(void **state)
+TEST(vapours_diffuse_as_measured)
 {
-    (void)state;
     static const struct {
         enum fluid fluid;
         double temperature, pressure, diffusivity, most;
@@ -188,9 +180,8 @@ static void vapours_diffuse_as_measured(void **state)
                      value[k].diffusivity, value[k].most);
 }
 
-static void diffusivity_goes_with_temperature_and_pressure(void **state)
+TEST(diffusivity_goes_with_temperature_and_pressure)
 {
-    (void)state;
     for (int fluid = 0; fluid < FLUID_OTHER; fluid++) {
         const double at_room = of(fluid, FLUID_DIFFUSIVITY, 293.15);
         assert_close(of(fluid, FLUID_DIFFUSIVITY, 353.15) / at_room,
@@ -202,17 +193,15 @@ static void diffusivity_goes_with_temperature_and_pressure(void **state)
 
 // Kadoya et al., J. Phys. Chem. Ref. Data 14 (1985) 947, of dry air at 0.1 MPa: 18.46
 // uPa s at 300 K and 21.74 at 370 K, over the density of an ideal gas of 28.965 g/mol.
-static void air_is_as_viscous_as_measured(void **state)
+TEST(air_is_as_viscous_as_measured)
 {
-    (void)state;
     const double gas_constant = 8.314462618 / 28.965e-3;
     assert_close(air_viscosity(300, 1e5), 18.46e-6 * gas_constant * 300 / 1e5, 0.01);
     assert_close(air_viscosity(370, 5e4), 21.74e-6 * gas_constant * 370 / 5e4, 0.01);
 }
 
-static void nothing_is_told_beyond_its_range(void **state)
+TEST(nothing_is_told_beyond_its_range)
 {
-    (void)state;
     for (int fluid = 0; fluid < FLUID_COUNT; fluid++)
         for (int property = 0; property < FLUID_PROPERTIES; property++) {
             const struct fluid_range range = fluid_range(fluid, property);
@@ -227,22 +216,4 @@ static void nothing_is_told_beyond_its_range(void **state)
             assert_true(isnan(of(fluid, property, NAN)));
         }
     assert_true(isnan(air_viscosity(150, 1e5)));
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(water_has_the_saturation_pressure_of_iapws_95),
-        cmocka_unit_test(water_has_the_surface_tension_of_iapws),
-        cmocka_unit_test(water_is_as_dense_and_viscous_as_the_tables_say),
-        cmocka_unit_test(liquids_boil_where_they_should),
-        cmocka_unit_test(liquids_are_as_their_equations_of_state_have_them),
-        cmocka_unit_test(liquids_are_as_dense_and_viscous_as_the_tables_say),
-        cmocka_unit_test(surface_tensions_are_near_those_of_jasper),
-        cmocka_unit_test(vapours_diffuse_as_measured),
-        cmocka_unit_test(diffusivity_goes_with_temperature_and_pressure),
-        cmocka_unit_test(air_is_as_viscous_as_measured),
-        cmocka_unit_test(nothing_is_told_beyond_its_range)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -47,9 +47,8 @@ static struct network cell_among_six(double angle)
     return network;
 }
 
-static void a_throat_is_felt_by_all_grains_around_it(void **state)
+TEST(a_throat_is_felt_by_all_grains_around_it)
 {
-    (void)state;
     struct network network = cell_among_six(0);
     struct patches patches = patches_of(&network, FORM_FACES);
     assert_int_equal(patches.n, 36);
@@ -81,9 +80,8 @@ static void check_pairs(const struct network *network, const struct patches *pat
     }
 }
 
-static void pairs_are_in_balance(void **state)
+TEST(pairs_are_in_balance)
 {
-    (void)state;
     struct network network = cell_among_six(0.7);
     struct patches patches = patches_of(&network, FORM_FACES);
     check_pairs(&network, &patches);
@@ -117,9 +115,8 @@ static double product(const struct patches *a, const struct patches *b)
 
 // What balance changes is orthogonal to all pulls in balance, so nothing nearer to the
 // form is one. Unequal grains, one closed cell.
-static void balance_changes_as_little_as_it_takes(void **state)
+TEST(balance_changes_as_little_as_it_takes)
 {
-    (void)state;
     struct network network = cell_among_six(0.7);
     struct patches form[3], balanced[3];
     for (enum form f = FORM_SOLID_ANGLE; f <= FORM_CENTRES; f++) {
@@ -164,9 +161,8 @@ static void check_contact_line(const struct network *network,
             assert_true(size(subtract(lines->patch[k].pull, sum)) < 1e-8);
 }
 
-static void contact_lines_pull_in_pairs(void **state)
+TEST(contact_lines_pull_in_pairs)
 {
-    (void)state;
     struct network network = cell_among_six(0.3);
     struct sectors sectors;
     struct reason reason;
@@ -181,9 +177,8 @@ static void contact_lines_pull_in_pairs(void **state)
 }
 
 // Turning the scene turns the pulls.
-static void pulls_turn_with_the_scene(void **state)
+TEST(pulls_turn_with_the_scene)
 {
-    (void)state;
     struct network straight = cell_among_six(0), slanting = cell_among_six(1.1);
     for (enum form form = FORM_SOLID_ANGLE; form <= FORM_CENTRES; form++) {
         struct patches one = patches_of(&straight, form);
@@ -230,9 +225,8 @@ static struct vector openings(const struct network *network, int throat, int a, 
     return sum;
 }
 
-static void patches_and_menisci_are_in_balance(void **state)
+TEST(patches_and_menisci_are_in_balance)
 {
-    (void)state;
     struct network network = cell_among_six(0.4);
     struct patches patches = patches_of(&network, FORM_SOLID_ANGLE);
     for (int t = 0; t < network.n_throat; t++) {
@@ -289,9 +283,8 @@ static double angle_of(const struct network *network, int throat, int a, int b)
 }
 
 // Each throat leaves the part of a ring that it faces: a quarter of the cell's own.
-static void throats_leave_their_part_of_rings(void **state)
+TEST(throats_leave_their_part_of_rings)
 {
-    (void)state;
     struct network network = cell_among_six(0.3);
     struct sectors sectors;
     struct pendular_rings rings;
@@ -323,9 +316,8 @@ static void throats_leave_their_part_of_rings(void **state)
 }
 
 // Grains in a row that overlap, so that all rings but those of other radii are alike.
-static void each_pair_in_a_row_has_its_own_ring(void **state)
+TEST(each_pair_in_a_row_has_its_own_ring)
 {
-    (void)state;
     static const double radii[][4] = {
         {0.2, 0.3, 0.3, 0.3}, {0.3, 0.3, 0.3, 0.2}, {0.3, 0.3, 0.3, 0.4}};
     for (int row = 0; row < 3; row++) {
@@ -366,9 +358,8 @@ static void each_pair_in_a_row_has_its_own_ring(void **state)
 }
 
 // A bridge that is none; the first pair by radii is named, its lower grain first.
-static void what_is_no_bridge_is_refused(void **state)
+TEST(what_is_no_bridge_is_refused)
 {
-    (void)state;
     struct network network = cell_among_six(0);
     struct ring_law bad = law;
     bad.contact_angle = 4;
@@ -382,21 +373,4 @@ static void what_is_no_bridge_is_refused(void **state)
     assert_int_equal(rings.patches.n, 0);
     sectors_free(&sectors);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_throat_is_felt_by_all_grains_around_it),
-        cmocka_unit_test(pairs_are_in_balance),
-        cmocka_unit_test(balance_changes_as_little_as_it_takes),
-        cmocka_unit_test(contact_lines_pull_in_pairs),
-        cmocka_unit_test(pulls_turn_with_the_scene),
-        cmocka_unit_test(patches_and_menisci_are_in_balance),
-        cmocka_unit_test(throats_leave_their_part_of_rings),
-        cmocka_unit_test(each_pair_in_a_row_has_its_own_ring),
-        cmocka_unit_test(what_is_no_bridge_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

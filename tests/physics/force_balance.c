@@ -110,9 +110,8 @@ static void check_balance(struct sectors *sectors)
     patches_free(&same);
 }
 
-static void balance_is_the_nearest_there_is(void **state)
+TEST(balance_is_the_nearest_there_is)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++) {
         struct network network = diagram_of(&scenes[s], 1);
         struct sectors sectors = wedges_of(&network);
@@ -124,9 +123,8 @@ static void balance_is_the_nearest_there_is(void **state)
 
 // Where a grain is around a throat in two repetitions of the box, each has its place:
 // else FORM_FACES would not be in balance.
-static void repetitions_are_grains_of_their_own(void **state)
+TEST(repetitions_are_grains_of_their_own)
 {
-    (void)state;
     const struct scene narrow = {false, {1, 1, 0}, BOUNDARY_TRUNCATE, IN_A_NARROW_BOX};
     struct network network = diagram_of(&narrow, 1);
     struct sectors sectors = wedges_of(&network);
@@ -171,22 +169,10 @@ static void check_scale(const struct scene *scene, int power)
 }
 
 // In nanometres and in gigametres the same bits.
-static void balance_does_not_depend_on_scale(void **state)
+TEST(balance_does_not_depend_on_scale)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++) {
         check_scale(&scenes[s], -30);
         check_scale(&scenes[s], 30);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(balance_is_the_nearest_there_is),
-        cmocka_unit_test(repetitions_are_grains_of_their_own),
-        cmocka_unit_test(balance_does_not_depend_on_scale),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,9 +51,8 @@ static void dried_free(struct dried *dried)
 static const struct suction_law by_clusters = {
     .rule = SUCTION_CLUSTERS, .uniform = 1e6, .meniscus = 0.14, .contact_line = 0.03};
 
-static void clusters_are_those_of_the_drying(void **state)
+TEST(clusters_are_those_of_the_drying)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct dried dried = dry_lattice(seed);
         struct liquid_loads liquid =
@@ -101,25 +100,22 @@ static void empties_next(double gravity)
     dried_free(&dried);
 }
 
-static void a_cluster_has_the_suction_of_what_empties_next(void **state)
+TEST(a_cluster_has_the_suction_of_what_empties_next)
 {
-    (void)state;
     empties_next(0);
 }
 
 // Under weight gas does not go next into the widest throat, and the suction grows with
 // height: by as much as a whole meniscus over this lattice.
-static void so_it_has_under_weight(void **state)
+TEST(so_it_has_under_weight)
 {
-    (void)state;
     empties_next(3e8);
 }
 
 // While all is wet only the throats at the open surface have menisci: one at their
 // upper end, two where they lie in it.
-static void menisci_begin_at_the_open_surface(void **state)
+TEST(menisci_begin_at_the_open_surface)
 {
-    (void)state;
     struct dried dried = dry_lattice(2);
     struct liquid_loads liquid =
         liquid_loads_begin(&dried.network, &dried.record, &by_clusters);
@@ -142,9 +138,8 @@ static void menisci_begin_at_the_open_surface(void **state)
 
 // One throat has emptied and one half before the first step, which is the last; one was
 // never to hold liquid, and leaves neither gas nor rings.
-static void a_drying_may_begin_with_some_throats_empty(void **state)
+TEST(a_drying_may_begin_with_some_throats_empty)
 {
-    (void)state;
     enum { EMPTY = 20, HALF = 30, NEVER = 40 };
     struct network network = lattice_network(4, 4, 4, 1);
     network.throat_kind[NEVER] = THROAT_IMPOSED_EMPTY;
@@ -236,9 +231,8 @@ static void check_field(const struct dried *dried, const struct liquid_loads *li
 }
 
 // At both ends of each step, and from there or from the beginning.
-static void a_field_is_that_of_the_time(void **state)
+TEST(a_field_is_that_of_the_time)
 {
-    (void)state;
     struct dried dried = dry_with_field();
     const struct drying_record *drying = &dried.record.drying;
     struct liquid_loads walking =
@@ -260,9 +254,8 @@ static void a_field_is_that_of_the_time(void **state)
 
 // Of what holds liquid in all three snapshots: the middle one beside a quarter of the
 // way, or beside the first where all three are of one time.
-static void the_error_of_a_field_is_what_the_middle_snapshot_adds(void **state)
+TEST(the_error_of_a_field_is_what_the_middle_snapshot_adds)
 {
-    (void)state;
     struct dried dried = dry_with_field();
     struct liquid_loads liquid =
         liquid_loads_begin(&dried.network, &dried.record, &by_field);
@@ -292,9 +285,8 @@ static void the_error_of_a_field_is_what_the_middle_snapshot_adds(void **state)
 }
 
 // Clusters have the same suction whichever way the filling has come to the step.
-static void steps_are_the_filling_of_their_times(void **state)
+TEST(steps_are_the_filling_of_their_times)
 {
-    (void)state;
     struct dried dried = dry_lattice(6);
     const struct drying_record *drying = &dried.record.drying;
     struct liquid_loads walking =
@@ -316,20 +308,4 @@ static void steps_are_the_filling_of_their_times(void **state)
     }
     liquid_loads_free(&walking);
     dried_free(&dried);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(clusters_are_those_of_the_drying),
-        cmocka_unit_test(a_cluster_has_the_suction_of_what_empties_next),
-        cmocka_unit_test(so_it_has_under_weight),
-        cmocka_unit_test(menisci_begin_at_the_open_surface),
-        cmocka_unit_test(a_drying_may_begin_with_some_throats_empty),
-        cmocka_unit_test(steps_are_the_filling_of_their_times),
-        cmocka_unit_test(a_field_is_that_of_the_time),
-        cmocka_unit_test(the_error_of_a_field_is_what_the_middle_snapshot_adds),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

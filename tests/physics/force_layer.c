@@ -73,9 +73,8 @@ static void check(const struct patches *patches, int throat, struct vector wante
     fail_msg("throat %d does nothing", throat);
 }
 
-static void throats_of_one_grain(void **state)
+TEST(throats_of_one_grain)
 {
-    (void)state;
     struct network network = layer();
     struct sectors sectors;
     struct reason reason;
@@ -97,11 +96,4 @@ static void throats_of_one_grain(void **state)
     patches_free(&lines);
     sectors_free(&sectors);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(throats_of_one_grain)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,9 +8,8 @@
 // By symmetry a cube's twelve patches are alike; each points at its throat, and the
 // arcs around one add up to arccos(1/sqrt 3). Of the cube's faces a throat has a
 // quarter of each of two.
-static void cube_has_twelve_equal_patches(void **state)
+TEST(cube_has_twelve_equal_patches)
 {
-    (void)state;
     struct network network = lattice_network(2, 2, 2, 1); // R = 1/2
     const double length[] = {[FORM_SOLID_ANGLE] = acos(1 / sqrt(3)) / 4,
                              [FORM_FACES] = sqrt(2) / 4,
@@ -46,9 +45,8 @@ static void move_nodes(struct network *network, uint64_t *seed)
 
 // Nodes moved at random, faces no longer flat: the patches still close around the
 // grain.
-static void patches_close_around_any_cell(void **state)
+TEST(patches_close_around_any_cell)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int trial = 0; trial < 100; trial++) {
         struct network network = lattice_network(2, 2, 2, 1);
@@ -63,9 +61,8 @@ static void patches_close_around_any_cell(void **state)
 }
 
 // The same cell seen in nanometres and in kilometres, by powers of two: the same bits.
-static void patches_do_not_depend_on_scale(void **state)
+TEST(patches_do_not_depend_on_scale)
 {
-    (void)state;
     struct network small = lattice_network(2, 2, 2, 0x1p-30);
     struct network large = lattice_network(2, 2, 2, 0x1p10);
     for (enum form form = FORM_SOLID_ANGLE; form <= FORM_CENTRES; form++) {
@@ -111,9 +108,8 @@ static struct network two_cells(void)
 // A power cell need not hold its own grain: engulfed by a large neighbour, the grain
 // lies beyond the face between them. Its patches still close around it, as do the
 // neighbour's.
-static void patches_close_around_an_engulfed_grain(void **state)
+TEST(patches_close_around_an_engulfed_grain)
 {
-    (void)state;
     struct network network = two_cells();
     struct packing *packing = &network.packing;
     packing->position[0] = (struct vector){0.5, 0.5, 1.05}; // just above its cell
@@ -131,9 +127,8 @@ static void patches_close_around_an_engulfed_grain(void **state)
 
 // With its centre in the face itself, there is no direction to the foot, and none is
 // needed.
-static void patches_close_around_a_grain_in_its_face(void **state)
+TEST(patches_close_around_a_grain_in_its_face)
 {
-    (void)state;
     struct network network = two_cells();
     network.packing.position[0].z = 1;
     network.packing.position[1].z = 1.5;
@@ -157,27 +152,12 @@ static void is_refused(struct network *network, const char *why)
     network_free(network);
 }
 
-static void broken_cells_are_refused(void **state)
+TEST(broken_cells_are_refused)
 {
-    (void)state;
     struct network network = lattice_network(2, 2, 2, 1);
     network.n_throat--; // between nodes 6 and 7
     is_refused(&network, "no throat between nodes 6 and 7");
     network = two_cells();
     network.face_particles[network.n_face - 1][1] = -6; // one grain is open there
     is_refused(&network, "is open at throat");
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cube_has_twelve_equal_patches),
-        cmocka_unit_test(patches_close_around_any_cell),
-        cmocka_unit_test(patches_do_not_depend_on_scale),
-        cmocka_unit_test(patches_close_around_an_engulfed_grain),
-        cmocka_unit_test(patches_close_around_a_grain_in_its_face),
-        cmocka_unit_test(broken_cells_are_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -96,9 +96,8 @@ static double error_between_the_ends(const struct pair *pair)
     return error;
 }
 
-static void forces_at_uniform_times(void **state)
+TEST(forces_at_uniform_times)
 {
-    (void)state;
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     double *time = uniform_times(&pair.record.drying, 7);
@@ -132,9 +131,8 @@ static void forces_at_uniform_times(void **state)
 // The contact line of throat 1 pulls grain 1 with 8 N from the moment at which throat 0
 // leaves gas at its end until it is empty itself; what is interpolated misses a jump by
 // all of it.
-static void what_jumps_is_missed(void **state)
+TEST(what_jumps_is_missed)
 {
-    (void)state;
     struct pair pair = two_throats();
     pair.law.contact_line = 16;
     struct patches *lines = &pair.loads.patches[LOAD_CONTACT_LINE];
@@ -156,9 +154,8 @@ static void what_jumps_is_missed(void **state)
     pair_free(&pair);
 }
 
-static void as_few_times_as_it_takes(void **state)
+TEST(as_few_times_as_it_takes)
 {
-    (void)state;
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     // Of sqrt(31.25), by which both steps together change F_0; the first alone by 5,
@@ -187,9 +184,8 @@ static void as_few_times_as_it_takes(void **state)
 
 // At time 0 forces of (5, 0, -2.5) at (-1, 0, 0) from the middle and 2.5 (0, 1, 0) at
 // (0, 0, 2); their moments are (0, -2.5, 0) and (-5, 0, 0).
-static void net_force_and_moment(void **state)
+TEST(net_force_and_moment)
 {
-    (void)state;
     struct pair pair = two_throats();
     const struct process process = process_of(&pair);
     static const double time[] = {0, 1, 2, 3};
@@ -207,9 +203,8 @@ static void net_force_and_moment(void **state)
 }
 
 // Pressures in three snapshots; node 0 falls dry in the last, node 2 is in gas.
-static void a_field_is_linear_between_snapshots(void **state)
+TEST(a_field_is_linear_between_snapshots)
 {
-    (void)state;
     struct pair pair = two_throats();
     static double when[] = {0.5, 1, 2.5};
     static double pressure[] = {-4, -8, 0, -6, -14, 0, 0, -20, 0};
@@ -237,9 +232,8 @@ static void a_field_is_linear_between_snapshots(void **state)
     pair_free(&pair);
 }
 
-static void auxiliary_grains_go(void **state)
+TEST(auxiliary_grains_go)
 {
-    (void)state;
     enum { N = 5, LEFT = 3 };
     static const uint8_t kind[N] = {0, GRAIN_AUXILIARY, 0, GRAIN_AUXILIARY, 0};
     static const int32_t bond[5][2] = {{0, 2}, {0, 1}, {1, 3}, {2, 4}, {3, 4}};
@@ -271,9 +265,8 @@ static void auxiliary_grains_go(void **state)
 }
 
 // A ring left by liquid of a suction is the bridge that has this suction.
-static void rings_have_the_suction_of_the_liquid(void **state)
+TEST(rings_have_the_suction_of_the_liquid)
 {
-    (void)state;
     const struct ring_law law = {.rule = RING_SUCTION,
                                  .suction = 1e6,
                                  .surface_tension = 0.07,
@@ -318,9 +311,8 @@ static struct throat_loads random_action(const struct network *network)
     return loads;
 }
 
-static void the_walk_keeps_to_forces_found_anew(void **state)
+TEST(the_walk_keeps_to_forces_found_anew)
 {
-    (void)state;
     struct network network = lattice_network(4, 4, 5, 5e-7);
     randomise_radii(&network, 5e-7, 0.4, 3);
     const struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
@@ -364,20 +356,4 @@ static void the_walk_keeps_to_forces_found_anew(void **state)
     free(exposed);
     drying_history_free(&history);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(forces_at_uniform_times),
-        cmocka_unit_test(what_jumps_is_missed),
-        cmocka_unit_test(as_few_times_as_it_takes),
-        cmocka_unit_test(net_force_and_moment),
-        cmocka_unit_test(a_field_is_linear_between_snapshots),
-        cmocka_unit_test(auxiliary_grains_go),
-        cmocka_unit_test(rings_have_the_suction_of_the_liquid),
-        cmocka_unit_test(the_walk_keeps_to_forces_found_anew),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

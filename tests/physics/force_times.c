@@ -81,9 +81,8 @@ static struct scene forces_through(int n_step, const struct vector (*force)[GRAI
 
 // ---- times --------------------------------------------------------------------------
 
-static void even_times_end_with_the_drying(void **state)
+TEST(even_times_end_with_the_drying)
 {
-    (void)state;
     double end[] = {0, 0.7};
     const struct drying_record record = {.n_step = 2, .time = end};
     for (int count = 2; count < 1000; count++) {
@@ -127,9 +126,8 @@ static struct scene scene_of(const struct row *row)
 }
 
 // In whatever unit forces are, and however many times are allowed.
-static void as_few_times_as_it_takes(void **state)
+TEST(as_few_times_as_it_takes)
 {
-    (void)state;
     for (int r = 0; r < N_ROW; r++) {
         struct scene scene = scene_of(&rows[r]);
         const struct process process = process_of(&scene);
@@ -162,9 +160,8 @@ static struct measures measures_of(const struct packing *packing,
 }
 
 // One force among nothing, on any grain at any of three times and however small.
-static void one_force_is_found_wherever_it_is(void **state)
+TEST(one_force_is_found_wherever_it_is)
 {
-    (void)state;
     const struct vector pull = {0, 3e-30, 4e-30};
     struct vector position[GRAINS] = {{2, 1, 1}, {1, 3, 1}}, all[3 * GRAINS] = {0};
     const struct packing packing = {
@@ -259,9 +256,8 @@ static void check_error(const struct scene *scene)
 
 // Where all bends, with contact lines, which jump, and where all of a field changes
 // that bends at every step and does not jump.
-static void what_is_interpolated_misses_as_much_as_said(void **state)
+TEST(what_is_interpolated_misses_as_much_as_said)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int trial = 0; trial < 20; trial++) {
         struct scene scene = random_scene(&seed);
@@ -285,16 +281,4 @@ static void what_is_interpolated_misses_as_much_as_said(void **state)
         check_error(&scene);
         scene_free(&scene);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(even_times_end_with_the_drying),
-        cmocka_unit_test(as_few_times_as_it_takes),
-        cmocka_unit_test(one_force_is_found_wherever_it_is),
-        cmocka_unit_test(what_is_interpolated_misses_as_much_as_said),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -205,9 +205,8 @@ static void check_all(const struct scene *scene, uint64_t seed, bool is_turned)
     network_free(&network);
 }
 
-static void wedges_lie_where_powers_are_equal(void **state)
+TEST(wedges_lie_where_powers_are_equal)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++)
         for (uint64_t seed = 1; seed <= (scenes[s].layer ? 5 : 1); seed++)
             for (int turned = 0; turned < 2; turned++)
@@ -215,9 +214,8 @@ static void wedges_lie_where_powers_are_equal(void **state)
 }
 
 // Where cells were left out no throat lies in a wall, however near in metres.
-static void walls_are_as_far_in_nanometres(void **state)
+TEST(walls_are_as_far_in_nanometres)
 {
-    (void)state;
     struct network network = diagram_of(&scenes[2], 1);
     resize(&network, 0x1p-30);
     struct sectors sectors;
@@ -267,9 +265,8 @@ static void check_closed(const struct scene *scene, bool is_turned)
     network_free(&network);
 }
 
-static void wedges_close_around_grains(void **state)
+TEST(wedges_close_around_grains)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++)
         for (int turned = 0; turned < 2; turned++)
             if (!scenes[s].layer && scenes[s].boundary == BOUNDARY_TRUNCATE)
@@ -326,9 +323,8 @@ static void check_rings(const struct scene *scene)
     network_free(&network);
 }
 
-static void rings_are_whole_in_the_end(void **state)
+TEST(rings_are_whole_in_the_end)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++)
         if (!scenes[s].layer && scenes[s].boundary == BOUNDARY_TRUNCATE)
             check_rings(&scenes[s]);
@@ -374,22 +370,8 @@ static void check_rings_of_layer(const struct scene *scene)
     network_free(&network);
 }
 
-static void throats_of_layers_leave_rings(void **state)
+TEST(throats_of_layers_leave_rings)
 {
-    (void)state;
     for (int s = 0; s < N_SCENE; s++)
         if (scenes[s].layer) check_rings_of_layer(&scenes[s]);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wedges_lie_where_powers_are_equal),
-        cmocka_unit_test(walls_are_as_far_in_nanometres),
-        cmocka_unit_test(wedges_close_around_grains),
-        cmocka_unit_test(rings_are_whole_in_the_end),
-        cmocka_unit_test(throats_of_layers_leave_rings),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -38,9 +38,8 @@ static struct net_load net_of(const struct packing *packing, const struct vector
 
 // Any forces, on grains of many sizes and anywhere: nothing is left of force or moment,
 // and what was taken off is what there was.
-static void nothing_is_left(void **state)
+TEST(nothing_is_left)
 {
-    (void)state;
     for (int far = 0; far < 2; far++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, false);
         const struct vector away = scale(far * 1e3 * RADIUS, (struct vector){1, -2, 3});
@@ -66,9 +65,8 @@ static void nothing_is_left(void **state)
 // Of grains on their way what is left of force and moment takes all momentum in the
 // time there is, linear and angular, about where they are now; not that of one that is
 // gone.
-static void what_is_left_stops_them(void **state)
+TEST(what_is_left_stops_them)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     struct vector *force = random_vectors(N, 1e-9, 3);
     struct vector *moved = random_vectors(N, RADIUS, 4);
@@ -105,9 +103,8 @@ static void what_is_left_stops_them(void **state)
 }
 
 // Grains in a line have no inertia about it; across it, they turn.
-static void a_row_turns_across_itself_only(void **state)
+TEST(a_row_turns_across_itself_only)
 {
-    (void)state;
     struct packing packing = cubic_lattice(5, 1, 1, false);
     struct vector force[5] = {
         {0, 1e-9, 0}, {3e-9, 0, 0}, {0, 0, 0}, {0, 0, 2e-9}, {0, 0, 0}};
@@ -117,9 +114,8 @@ static void a_row_turns_across_itself_only(void **state)
     packing_free(&packing);
 }
 
-static void of_nobody_nothing_is_taken(void **state)
+TEST(of_nobody_nothing_is_taken)
 {
-    (void)state;
     struct packing packing = cubic_lattice(2, 1, 1, false);
     const bool is_gone[2] = {true, true};
     struct vector force[2] = {{1e-9, 0, 0}, {0, 0, 0}};
@@ -130,9 +126,8 @@ static void of_nobody_nothing_is_taken(void **state)
 
 // Of a box that repeats only what moves all grains one way is taken off, and what turns
 // them about the one axis along which it repeats: the same wherever the box begins.
-static void a_box_that_repeats_does_not_turn(void **state)
+TEST(a_box_that_repeats_does_not_turn)
 {
-    (void)state;
     for (int axes = 1; axes <= 2; axes++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, true);
         packing.periodic[1] = axes == 2;
@@ -200,9 +195,8 @@ static struct vector *moved(const struct packing *packing, struct vector *force,
 
 // Both engines shrink it alike: bonds stretch as much, whatever the body does as one.
 // The load is net in force and moment, and would turn it over.
-static void both_engines_shrink_it_alike(void **state)
+TEST(both_engines_shrink_it_alike)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     struct vector *force = shrinking_load(&packing, 1e-13);
     const struct replay_settings cycles = settings_of(ENGINE_EXPLICIT, SUPPORT_FREE);
@@ -243,9 +237,8 @@ static double turn_of(const struct packing *packing, const struct vector *displa
 // Pressed from all sides by forces that keep their directions it is a pencil on its
 // tip. A nudge turns it over if only the load at the start is made without a net one;
 // what follows the grains keeps it as it is, for as long as one likes.
-static void pressed_it_stays_as_it_is(void **state)
+TEST(pressed_it_stays_as_it_is)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     struct vector *force = shrinking_load(&packing, 1e-7);
     struct replay_settings settings = settings_of(ENGINE_EXPLICIT, SUPPORT_FREE);
@@ -261,19 +254,4 @@ static void pressed_it_stays_as_it_is(void **state)
     free(fell);
     free(force);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_is_left),
-        cmocka_unit_test(what_is_left_stops_them),
-        cmocka_unit_test(a_row_turns_across_itself_only),
-        cmocka_unit_test(of_nobody_nothing_is_taken),
-        cmocka_unit_test(a_box_that_repeats_does_not_turn),
-        cmocka_unit_test(both_engines_shrink_it_alike),
-        cmocka_unit_test(pressed_it_stays_as_it_is),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

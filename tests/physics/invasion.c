@@ -178,9 +178,8 @@ static void check_all(const struct network *network, int different, uint64_t *se
     free(entry_priority);
 }
 
-static void test_lattices(void **state)
+TEST(lattices)
 {
-    (void)state;
     struct network network = lattice_network(4, 4, 5, 1);
     for (uint64_t seed = 1; seed <= 4; seed++) {
         check_all(&network, 1000000, &seed);
@@ -223,9 +222,8 @@ static struct network random_network(int n_node, int n_throat, uint64_t *seed)
     return network;
 }
 
-static void test_random_networks(void **state)
+TEST(random_networks)
 {
-    (void)state;
     uint64_t seed = 7;
     for (int run = 0; run < 300; run++) {
         const int n_node = 2 + (int)(next_random(&seed) * 30);
@@ -239,9 +237,8 @@ static void test_random_networks(void **state)
 // --- closed forms ------------------------------------------------------------------
 
 // A chain: whatever its radii, from one end to the other.
-static void test_chain(void **state)
+TEST(chain)
 {
-    (void)state;
     enum { N = 10 };
     struct network network = lattice_network(1, 1, N, 1);
     randomise_radii(&network, 1, 0.5, 3);
@@ -263,9 +260,8 @@ static void test_chain(void **state)
 }
 
 // Liquid in a dead end leaves only if nothing is trapped.
-static void test_dead_end(void **state)
+TEST(dead_end)
 {
-    (void)state;
     int32_t nodes[][2] = {{0, 1}, {1, 2}, {1, 3}}; // 3 is the end
     double radius[] = {1, 2, 3};
     uint8_t walls[4] = {WALL_X_LOWER, 0, WALL_X_UPPER, 0}, kind[3] = {0};
@@ -310,9 +306,8 @@ static double threshold(struct network *network, uint64_t *seed)
 
 // The square lattice of L by L+1 nodes is its own dual: half of all are crossed at a
 // share of exactly 1/2, however small.
-static void test_square_lattice_is_crossed_at_half(void **state)
+TEST(square_lattice_is_crossed_at_half)
 {
-    (void)state;
     enum { RUNS = 4000 };
     uint64_t seed = 21;
     for (int size = 2; size <= 16; size *= 2) {
@@ -327,9 +322,8 @@ static void test_square_lattice_is_crossed_at_half(void **state)
 
 // Threshold of the cubic lattice: the mean over finite ones, extrapolated in their
 // standard deviation to infinite size.
-static void test_cubic_threshold(void **state)
+TEST(cubic_threshold)
 {
-    (void)state;
     enum { RUNS = 400 };
     double mean[2], deviation[2];
     uint64_t seed = 22;
@@ -407,9 +401,8 @@ static void check_renumbered(enum invasion_rule rule, int different)
     network_free(&two);
 }
 
-static void test_renumbered(void **state)
+TEST(renumbered)
 {
-    (void)state;
     static const int different[3] = {1000000, 4, 1};
     for (int k = 0; k < 3; k++) {
         check_renumbered(INVADE_THROATS, different[k]);
@@ -417,9 +410,8 @@ static void test_renumbered(void **state)
     }
 }
 
-static void test_ranks_of_any_radii(void **state)
+TEST(ranks_of_any_radii)
 {
-    (void)state;
     enum { N = 5000 };
     static double radius[N];
     static int order[N];
@@ -442,19 +434,4 @@ static void test_ranks_of_any_radii(void **state)
             assert_int_equal(same[k], before - here <= 0x1p-40 * fabs(before));
         }
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lattices),
-        cmocka_unit_test(test_random_networks),
-        cmocka_unit_test(test_chain),
-        cmocka_unit_test(test_dead_end),
-        cmocka_unit_test(test_square_lattice_is_crossed_at_half),
-        cmocka_unit_test(test_cubic_threshold),
-        cmocka_unit_test(test_renumbered),
-        cmocka_unit_test(test_ranks_of_any_radii)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -102,9 +102,8 @@ static struct vector moment_of(const struct packing *packing,
 
 // What the load and the supports give is what the grains gain of momentum, in every
 // cycle that is looked at: while bonds break and contacts slip.
-static void the_whole_balances_in_motion(void **state)
+TEST(the_whole_balances_in_motion)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     uint8_t *held = lowest_grains(&packing, SIDE);
     struct dem_setup setup = stiff_setup(&packing);
@@ -215,9 +214,8 @@ static void check_balance_at_rest(const struct packing *packing, enum way way)
     free(held);
 }
 
-static void the_whole_balances_at_rest(void **state)
+TEST(the_whole_balances_at_rest)
 {
-    (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
         check_balance_at_rest(&packing, SMALL);
@@ -262,9 +260,8 @@ static double imbalance(const struct packing *packing, const uint8_t *held,
     return fabs(was.kinetic + was.elastic + lost - was.gained) / was.gained;
 }
 
-static void energy_is_not_created(void **state)
+TEST(energy_is_not_created)
 {
-    (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
         uint8_t *held = lowest_grains(&packing, SIDE);
@@ -314,9 +311,8 @@ static double work_of_a_loop(double friction, const double *relative)
 
 // Equilibria give back what they took, to rounding; slip and bonds that break keep some
 // of it.
-static void a_loop_of_the_load_gains_nothing(void **state)
+TEST(a_loop_of_the_load_gains_nothing)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     double *strong = NEW_ARRAY(double, packing.n_bond);
     double *relative = weak_and_strong(&packing);
@@ -333,9 +329,8 @@ static void a_loop_of_the_load_gains_nothing(void **state)
 }
 
 // However the load comes and goes.
-static void bonds_never_heal(void **state)
+TEST(bonds_never_heal)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, true);
     uint8_t *held = lowest_grains(&packing, SIDE);
     double *relative = weak_and_strong(&packing);
@@ -406,9 +401,8 @@ static double difference(const struct packing *first, const struct response *a,
     return most / largest;
 }
 
-static void turned_and_renumbered_the_same(void **state)
+TEST(turned_and_renumbered_the_same)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, false);
     int *order = shuffled(N, &(uint64_t){3});
     const double angle = 0.7;
@@ -459,9 +453,8 @@ static void turned_and_renumbered_the_same(void **state)
 }
 
 // A box that repeats may begin anywhere.
-static void moved_across_the_sides_the_same(void **state)
+TEST(moved_across_the_sides_the_same)
 {
-    (void)state;
     struct packing packing = irregular_packing(SIDE, RADIUS, true);
     struct packing other = turned_packing(&packing, axis, 0, NULL);
     other.lower = packing.lower;
@@ -502,9 +495,8 @@ static void moved_across_the_sides_the_same(void **state)
 }
 
 // Enough grains to share.
-static void threads_make_no_difference(void **state)
+TEST(threads_make_no_difference)
 {
-    (void)state;
     struct packing packing = irregular_packing(10, RADIUS, true);
     uint8_t *held = lowest_grains(&packing, 10);
     struct vector *force = shrinking_load(&packing, size);
@@ -534,9 +526,8 @@ static void threads_make_no_difference(void **state)
 
 // So small a load that grains do not turn to speak of, without friction: cycles come to
 // the equilibrium, the more of them the nearer.
-static void cycles_come_to_equilibrium(void **state)
+TEST(cycles_come_to_equilibrium)
 {
-    (void)state;
     for (int repeats = 0; repeats < 2; repeats++) {
         struct packing packing = irregular_packing(SIDE, RADIUS, repeats);
         uint8_t *held = lowest_grains(&packing, SIDE);
@@ -575,21 +566,4 @@ static void cycles_come_to_equilibrium(void **state)
         free(held);
         packing_free(&packing);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_whole_balances_in_motion),
-        cmocka_unit_test(the_whole_balances_at_rest),
-        cmocka_unit_test(energy_is_not_created),
-        cmocka_unit_test(a_loop_of_the_load_gains_nothing),
-        cmocka_unit_test(bonds_never_heal),
-        cmocka_unit_test(turned_and_renumbered_the_same),
-        cmocka_unit_test(moved_across_the_sides_the_same),
-        cmocka_unit_test(threads_make_no_difference),
-        cmocka_unit_test(cycles_come_to_equilibrium),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

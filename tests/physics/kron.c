@@ -221,9 +221,8 @@ static double largest_of(const double *value, int n)
 }
 
 // Every potential to its own digits; the flows to those of the largest.
-static void test_elimination_keeps_its_digits(void **state)
+TEST(elimination_keeps_its_digits)
 {
-    (void)state;
     for (int decades = 12; decades <= 48; decades += 12) {
         const struct sample sample = make_sample(decades, 3u + (unsigned)decades);
         double exact[NODES], potential[NODES], exact_flow[ENDS], flow[ENDS];
@@ -237,9 +236,8 @@ static void test_elimination_keeps_its_digits(void **state)
     }
 }
 
-static void test_graph_finds_the_same(void **state)
+TEST(graph_finds_the_same)
 {
-    (void)state;
     for (int decades = 0; decades <= 12; decades += 4) {
         const struct sample sample = make_sample(decades, 7u + (unsigned)decades);
         double potential[NODES], exact_flow[ENDS], flow[ENDS];
@@ -249,13 +247,4 @@ static void test_graph_finds_the_same(void **state)
         for (int e = 0; e < ENDS; e++)
             assert_true(fabs(flow[e] - exact_flow[e]) < 1e-13 * largest);
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_elimination_keeps_its_digits),
-        cmocka_unit_test(test_graph_finds_the_same)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

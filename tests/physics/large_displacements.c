@@ -44,9 +44,8 @@ static double row_error(double force, double angle, double increment)
 
 // Its end turns by more than a right angle; the error falls with the square of the
 // increments.
-static void a_row_bent_far(void **state)
+TEST(a_row_bent_far)
 {
-    (void)state;
     const double unit = 2 * bending_stiffness() / (HINGES * HINGES * 2 * RADIUS);
     const double angle = 0.6 * M_PI;
     const double coarse = row_error(2.5 * unit, angle, 0.04);
@@ -57,9 +56,8 @@ static void a_row_bent_far(void **state)
 
 // ---- buckling -----------------------------------------------------------------------
 
-static void a_row_buckles(void **state)
+TEST(a_row_buckles)
 {
-    (void)state;
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
     const struct quasi_static_setup setup = row_setup(&packing, fixed);
@@ -153,9 +151,8 @@ static void cycles_to_rest(const struct quasi_static_setup *setup, double size,
 }
 
 // Contacts push and open, grains turn by 0.009 to 0.33 rad.
-static void a_block_as_the_discrete_elements(void **state)
+TEST(a_block_as_the_discrete_elements)
 {
-    (void)state;
     const struct {
         double size, turn;
         int steps;
@@ -183,9 +180,8 @@ static void a_block_as_the_discrete_elements(void **state)
 // Contact bonds. Nothing resists rolling in cycles; what does here matters as much as
 // it is of the shear stiffness, while grains have not moved so far that their turning
 // like gears, which nothing then brings to rest, turns the shear forces.
-static void contact_bonds_as_the_discrete_elements(void **state)
+TEST(contact_bonds_as_the_discrete_elements)
 {
-    (void)state;
     struct block *block = new_block();
     struct quasi_static_setup setup = block_setup(&block->packing, block->fixed);
     setup.bond.kind = DEM_CONTACT_BOND;
@@ -209,9 +205,8 @@ static void contact_bonds_as_the_discrete_elements(void **state)
 
 // A row that is bent until its end lies on a grain that was half a radius away, and
 // further: contacts are found on the way.
-static void grains_that_come_to_touch(void **state)
+TEST(grains_that_come_to_touch)
 {
-    (void)state;
     enum { LONG = 6, N = LONG + 1 };
     struct packing packing = cubic_lattice(LONG, 1, 1, false);
     packing.n_particle = N;
@@ -337,9 +332,8 @@ static double apex_error(double load, double increment, double height, double *e
     return error;
 }
 
-static void a_truss_snaps_through(void **state)
+TEST(a_truss_snaps_through)
 {
-    (void)state;
     double ended;
     const double limit = root(truss_slope, 0, rise, 0);
     const double most = truss_force(limit), below = 0.99 * most, load = 1.5 * most;
@@ -355,9 +349,8 @@ static void a_truss_snaps_through(void **state)
 
 // Cycles under a load that grows slowly swing through, and come to rest in the same
 // place.
-static void cycles_snap_through_too(void **state)
+TEST(cycles_snap_through_too)
 {
-    (void)state;
     const double load = 1.5 * truss_force(root(truss_slope, 0, rise, 0));
     struct packing packing = truss();
     const uint8_t fixed[BARS + 1] = {1, 1, 1, 1, 0};
@@ -403,9 +396,8 @@ static void find_block(const struct block *block, bool is_turned, double frictio
     quasi_static_free(equilibrium);
 }
 
-static void a_turned_scene_gives_the_same(void **state)
+TEST(a_turned_scene_gives_the_same)
 {
-    (void)state;
     for (int k = 0; k < 2; k++) {
         const double friction = 0.3 * k;
         struct block *block = new_block();
@@ -465,30 +457,12 @@ static double work_not_stored(int steps, double *energy)
 }
 
 // The midpoint rule's error falls with the square of the increments, to nothing.
-static void work_is_stored(void **state)
+TEST(work_is_stored)
 {
-    (void)state;
     double energy;
     const double coarse = work_not_stored(32, &energy);
     const double fine = work_not_stored(64, &energy);
     print_message("# extrapolated: %g\n", (4 * fine - coarse) / 3 / energy);
     assert_true(fabs(4 * fine - coarse) / 3 < 1e-8 * energy);
     assert_true(fabs(fine) < fabs(coarse) / 3.5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_row_bent_far),
-        cmocka_unit_test(a_row_buckles),
-        cmocka_unit_test(a_truss_snaps_through),
-        cmocka_unit_test(cycles_snap_through_too),
-        cmocka_unit_test(a_block_as_the_discrete_elements),
-        cmocka_unit_test(grains_that_come_to_touch),
-        cmocka_unit_test(contact_bonds_as_the_discrete_elements),
-        cmocka_unit_test(a_turned_scene_gives_the_same),
-        cmocka_unit_test(work_is_stored),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("large displacements", tests, NULL, NULL);
 }

@@ -88,9 +88,8 @@ static void press_unevenly(const struct packing *packing, double size,
     }
 }
 
-static void held_or_not(void **state)
+TEST(held_or_not)
 {
-    (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, SIDE, false);
     const uint8_t middle[CUBE] = {[CENTRE] = 1};
     for (int is_large = 0; is_large < 2; is_large++) {
@@ -120,9 +119,8 @@ static void held_or_not(void **state)
 }
 
 // Forces in balance: what there is left to hold is nothing; displacements small or not.
-static void a_little_as_small_displacements(void **state)
+TEST(a_little_as_small_displacements)
 {
-    (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
     struct quasi_static_setup setup = free_setup(&packing);
     struct vector force[BLOCK];
@@ -141,9 +139,8 @@ static void a_little_as_small_displacements(void **state)
 // ---- a row pushed at both ends ------------------------------------------------------
 
 // Its middle stays, so that it buckles as half of it does that is held there.
-static void a_row_buckles_as_its_half(void **state)
+TEST(a_row_buckles_as_its_half)
 {
-    (void)state;
     enum { WHOLE = 2 * HINGES + 1 };
     struct packing packing = cubic_lattice(WHOLE, 1, 1, false);
     struct quasi_static_setup setup = free_setup(&packing);
@@ -215,9 +212,8 @@ static double largest(const struct vector *moved)
     return most;
 }
 
-static void a_scene_turned_and_elsewhere(void **state)
+TEST(a_scene_turned_and_elsewhere)
 {
-    (void)state;
     const struct vector axis = {2, 3, 6}, away = {40 * RADIUS, -7 * RADIUS, 0};
     for (int k = 0; k < 2; k++) {
         struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
@@ -296,9 +292,8 @@ static struct vector mean_turn(const struct packing *packing,
 
 // Cycles have no angular momentum, and yet turn a little as a body changes its shape:
 // as if forces turned the other way.
-static void cycles_shrink_it_as_far(void **state)
+TEST(cycles_shrink_it_as_far)
 {
-    (void)state;
     struct packing packing = cubic_lattice(SIDE, SIDE, HIGH, false);
     struct quasi_static_setup setup = free_setup(&packing);
     setup.increment = 0.005;
@@ -320,17 +315,4 @@ static void cycles_shrink_it_as_far(void **state)
     assert_true(norm(turn) < 1e-4 && off < 1e-4 && still_off < 2e-6);
     free(moved);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(held_or_not),
-        cmocka_unit_test(a_little_as_small_displacements),
-        cmocka_unit_test(a_row_buckles_as_its_half),
-        cmocka_unit_test(a_scene_turned_and_elsewhere),
-        cmocka_unit_test(cycles_shrink_it_as_far),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("large free body", tests, NULL, NULL);
 }

@@ -26,9 +26,8 @@ static void note(void *context, double balanced)
 // open, slide or stick, which Newton's method does not see through however near it
 // begins. It comes to rest by steps in time, after few tries that take long,
 // and says so all the way.
-static void a_block_that_is_let_go(void **state)
+TEST(a_block_that_is_let_go)
 {
-    (void)state;
     struct packing packing = cubic_lattice(WIDE, WIDE, TALL, false);
     uint8_t fixed[MANY] = {0};
     memset(fixed, 1, WIDE * WIDE);
@@ -78,9 +77,8 @@ static struct block *new_breaking_block(void)
 
 // Forces that press the stiffest joint by a thousand radii, or by 1e39 times as many,
 // take all grains that are not held away: steps in time are as short as that asks for.
-static void forces_beyond_all_joints(void **state)
+TEST(forces_beyond_all_joints)
 {
-    (void)state;
     const double sizes[] = {10, 1e10, 1e40};
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         struct block *block = new_breaking_block();
@@ -100,9 +98,8 @@ static void forces_beyond_all_joints(void **state)
 }
 
 // One that does not come to rest, bond after bond, is one load without rest.
-static void a_load_without_rest_counts_once(void **state)
+TEST(a_load_without_rest_counts_once)
 {
-    (void)state;
     struct block *block = new_breaking_block();
     block->setup.most_iterations = 1;
     struct quasi_static *equilibrium = make_equilibrium(&block->setup);
@@ -120,9 +117,8 @@ static void a_load_without_rest_counts_once(void **state)
 // ---- a limit ------------------------------------------------------------------------
 
 // A row that is drawn across takes more increments than it is given here.
-static void a_way_that_is_too_long(void **state)
+TEST(a_way_that_is_too_long)
 {
-    (void)state;
     enum { ROW = 10 };
     struct packing packing = cubic_lattice(ROW, 1, 1, false);
     const uint8_t fixed[ROW] = {1};
@@ -144,16 +140,4 @@ static void a_way_that_is_too_long(void **state)
     assert_non_null(strstr(reason.text, "grain 9 "));
     quasi_static_free(equilibrium);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_block_that_is_let_go),
-        cmocka_unit_test(forces_beyond_all_joints),
-        cmocka_unit_test(a_load_without_rest_counts_once),
-        cmocka_unit_test(a_way_that_is_too_long),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests_name("large ways end", tests, NULL, NULL);
 }

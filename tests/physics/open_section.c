@@ -120,9 +120,8 @@ static void assert_areas(const struct triangle *triangle)
     }
 }
 
-static void test_areas(void **state)
+TEST(areas)
 {
-    (void)state;
     assert_areas(&touching);
     assert_areas(&unequal);
     assert_areas(&overlapping);
@@ -151,9 +150,8 @@ static void assert_diffusion(const struct triangle *triangle, double length,
     assert_close(section_shape(&section).diffusion, wanted, tolerance);
 }
 
-static void test_diffusion(void **state)
+TEST(diffusion)
 {
-    (void)state;
     assert_diffusion(&touching, 1.3, 1e-9); // grains end within the throat
     assert_diffusion(&touching, 0.2, 1e-9); // before the narrowest place
     assert_diffusion(&unequal, 1.1, 1e-9);
@@ -161,9 +159,8 @@ static void test_diffusion(void **state)
 }
 
 // Far from any grain a throat is the prism of its polygon.
-static void test_prism(void **state)
+TEST(prism)
 {
-    (void)state;
     struct section_grain grain[GRAINS];
     struct section_overlap overlap[GRAINS];
     struct triangle far = touching;
@@ -173,9 +170,8 @@ static void test_prism(void **state)
 }
 
 // Three discs that cover the middle of the triangle close the throat.
-static void test_closed(void **state)
+TEST(closed)
 {
-    (void)state;
     struct section_grain grain[GRAINS];
     struct section_overlap overlap[GRAINS];
     struct triangle covered = touching;
@@ -188,9 +184,8 @@ static void test_closed(void **state)
 }
 
 // Everything in other units: conductances scale as length and length^3.
-static void test_units(void **state)
+TEST(units)
 {
-    (void)state;
     struct section_grain grain[GRAINS];
     struct section_overlap overlap[GRAINS];
     const struct open_section section = section_of(&unequal, 1.1, grain, overlap);
@@ -215,9 +210,8 @@ static void test_units(void **state)
 
 // Discs that touch each other: Descartes' theorem on curvatures. And a disc that is
 // known to touch three others, wherever they lie.
-static void test_inscribed(void **state)
+TEST(inscribed)
 {
-    (void)state;
     const double a = 1, b = 0.4, c = 0.15, ab = a + b, ac = a + c, bc = b + c;
     const double x = (ab * ab + ac * ac - bc * bc) / (2 * ab);
     const double centre[3][2] = {{0, 0}, {ab, 0}, {x, sqrt(ac * ac - x * x)}};
@@ -238,15 +232,4 @@ static void test_inscribed(void **state)
     assert_true(inscribed_disc(in_line, around) == 0);
     const double wide[3] = {3, 3, 3}; // cover the gap
     assert_true(inscribed_disc(placed, wide) == 0);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_areas), cmocka_unit_test(test_diffusion),
-        cmocka_unit_test(test_prism), cmocka_unit_test(test_closed),
-        cmocka_unit_test(test_units), cmocka_unit_test(test_inscribed),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

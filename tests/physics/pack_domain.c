@@ -54,9 +54,8 @@ static void check_volume(const struct domain *domain, double expected)
     gsl_rng_free(random);
 }
 
-static void volumes(void **state)
+TEST(volumes)
 {
-    (void)state;
     const double whole[] = {24, 12 * M_PI, 11.25 * M_PI, 32 * M_PI / 3};
     for (int shape = DOMAIN_BOX; shape <= DOMAIN_SPHERE; shape++) {
         const struct domain_parameters parameters = said(shape);
@@ -65,9 +64,8 @@ static void volumes(void **state)
     }
 }
 
-static void volumes_with_cuts(void **state)
+TEST(volumes_with_cuts)
 {
-    (void)state;
     const double whole[] = {24, 12 * M_PI, 11.25 * M_PI, 32 * M_PI / 3};
     for (int shape = DOMAIN_BOX; shape <= DOMAIN_SPHERE; shape++) {
         struct domain_parameters parameters = said(shape);
@@ -91,9 +89,8 @@ static void volumes_with_cuts(void **state)
     }
 }
 
-static void cylinder_right_through(void **state)
+TEST(cylinder_right_through)
 {
-    (void)state;
     struct domain_parameters parameters = said(DOMAIN_CYLINDER);
     parameters.cut = CUT_CYLINDER;
     const struct domain pierced = made(&parameters, 3);
@@ -104,9 +101,8 @@ static void cylinder_right_through(void **state)
     assert_true(fabs(domain_volume(&pierced) / domain_volume(&ring) - 1) < 1e-14);
 }
 
-static void discs(void **state)
+TEST(discs)
 {
-    (void)state;
     struct domain_parameters parameters = said(DOMAIN_SPHERE);
     parameters.cut = CUT_SPHERE;
     const struct domain domain = made(&parameters, 2);
@@ -115,9 +111,8 @@ static void discs(void **state)
 }
 
 // A cut that repeats with the box is felt across the side.
-static void cut_across_a_side(void **state)
+TEST(cut_across_a_side)
 {
-    (void)state;
     struct domain_parameters parameters = said(DOMAIN_BOX);
     parameters.periodic[0] = true;
     parameters.cut = CUT_SPHERE;
@@ -130,9 +125,8 @@ static void cut_across_a_side(void **state)
 }
 
 // Second moments of places where a grain of radius 0.1 fits.
-static void places_are_even(void **state)
+TEST(places_are_even)
 {
-    (void)state;
     const double radius = 0.1;
     // of rho^2 in discs and rings, of r^2 in the sphere, of x^2 in the box
     const double moment[] = {2.8 * 2.8 / 12, 1.9 * 1.9 / 2, (1.9 * 1.9 + 0.6 * 0.6) / 2,
@@ -159,18 +153,4 @@ static void places_are_even(void **state)
         assert_true(fabs(height) < 3.5 * 2 / sqrt(POINTS));
         gsl_rng_free(random);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(volumes),
-        cmocka_unit_test(volumes_with_cuts),
-        cmocka_unit_test(cylinder_right_through),
-        cmocka_unit_test(discs),
-        cmocka_unit_test(cut_across_a_side),
-        cmocka_unit_test(places_are_even),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

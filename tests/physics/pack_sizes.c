@@ -142,18 +142,16 @@ static struct size_parameters said(int distribution)
                                     .second_radius = (double)NAN};
 }
 
-static void even_sizes(void **state)
+TEST(even_sizes)
 {
-    (void)state;
     struct size_parameters parameters = said(SIZES_UNIFORM);
     parameters.smallest = 1e-8;
     parameters.largest = 5e-7;
     check_both(even, parameters);
 }
 
-static void power_laws(void **state)
+TEST(power_laws)
 {
-    (void)state;
     struct size_parameters parameters = said(SIZES_POWER);
     parameters.smallest = 2;
     parameters.largest = 100;
@@ -163,9 +161,8 @@ static void power_laws(void **state)
     }
 }
 
-static void normal_sizes(void **state)
+TEST(normal_sizes)
 {
-    (void)state;
     struct size_parameters parameters = said(SIZES_NORMAL);
     check_both(normal, parameters);
     parameters.spread = 0.05;
@@ -179,9 +176,8 @@ static void normal_sizes(void **state)
     check_both(normal, parameters);
 }
 
-static void lognormal_sizes(void **state)
+TEST(lognormal_sizes)
 {
-    (void)state;
     struct size_parameters parameters = said(SIZES_LOGNORMAL);
     check_both(lognormal, parameters);
     parameters.spread = 1;
@@ -190,9 +186,8 @@ static void lognormal_sizes(void **state)
     check_both(lognormal, parameters);
 }
 
-static void sieve_curves(void **state)
+TEST(sieve_curves)
 {
-    (void)state;
     struct size_parameters parameters = said(SIZES_SIEVE);
     parameters.sieve_radii = (struct number_list){5, {1e-3, 2e-3, 4e-3, 1e-2, 5e-2}};
     parameters.sieve_passing = (struct number_list){5, {0, 0.1, 0.1, 0.6, 1}};
@@ -200,9 +195,8 @@ static void sieve_curves(void **state)
 }
 
 // Untruncated lognormal: closed forms for all it takes, not our own integral.
-static void lognormal_moments(void **state)
+TEST(lognormal_moments)
 {
-    (void)state;
     const struct size_parameters parameters = said(SIZES_LOGNORMAL);
     struct sizes sizes;
     struct reason reason;
@@ -239,24 +233,11 @@ static void check_modes(int by, double share, double expected)
     gsl_rng_free(random);
 }
 
-static void two_modes(void **state)
+TEST(two_modes)
 {
-    (void)state;
     check_modes(SHARE_OF_NUMBER, 0.25, 0.25);
     check_modes(SHARE_OF_NUMBER, 0, 0);
     check_modes(SHARE_OF_NUMBER, 1, 1);
     // 0.001 of the mass in grains 125,000 times lighter: 125 of 125.999 shares
     check_modes(SHARE_OF_MASS, 0.001, 125 / 125.999);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(even_sizes),   cmocka_unit_test(power_laws),
-        cmocka_unit_test(normal_sizes), cmocka_unit_test(lognormal_sizes),
-        cmocka_unit_test(sieve_curves), cmocka_unit_test(lognormal_moments),
-        cmocka_unit_test(two_modes),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

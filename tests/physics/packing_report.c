@@ -22,9 +22,8 @@ static double from(double x, double y, double z)
     return sphere_in_box(1, (struct vector){x, y, z}, (struct vector){far, far, far});
 }
 
-static void test_planes_through_the_middle_halve_a_sphere(void **state)
+TEST(planes_through_the_middle_halve_a_sphere)
 {
-    (void)state;
     const double whole = 4 * M_PI / 3;
     assert_within(from(-far, -far, -far), whole, 1e-15);
     assert_within(from(0, -far, -far), whole / 2, 1e-15);
@@ -32,9 +31,8 @@ static void test_planes_through_the_middle_halve_a_sphere(void **state)
     assert_within(from(0, 0, 0), whole / 8, 1e-15);
 }
 
-static void test_caps(void **state)
+TEST(caps)
 {
-    (void)state;
     for (double h = 0.05; h < 2; h += 0.05) {
         const double cap = M_PI * h * h * (3 - h) / 3;
         assert_within(from(1 - h, -far, -far), cap, 1e-14);
@@ -44,9 +42,8 @@ static void test_caps(void **state)
 }
 
 // A plane, an edge or a corner that touches the sphere from within or without.
-static void test_touching_planes_cut_nothing(void **state)
+TEST(touching_planes_cut_nothing)
 {
-    (void)state;
     const double whole = 4 * M_PI / 3, edge = sqrt(0.5), corner = sqrt(1. / 3);
     const struct vector one = {1, 1, 1};
     assert_within(sphere_in_box(1, scale(-1, one), one), whole, 1e-15);
@@ -58,9 +55,8 @@ static void test_touching_planes_cut_nothing(void **state)
 }
 
 // The cube inscribed in a sphere is all sphere; half of one not quite in it as well.
-static void test_a_box_within_is_full(void **state)
+TEST(a_box_within_is_full)
 {
-    (void)state;
     const struct vector half = {0.5, 0.3, 0.6};
     assert_within(sphere_in_box(1, scale(-1, half), half), 8 * 0.5 * 0.3 * 0.6, 1e-14);
     const double a = sqrt(1. / 3);
@@ -92,9 +88,8 @@ static double slice_area(double x, void *data)
     return top - low - corner->c * (end - b);
 }
 
-static void test_corners_by_quadrature(void **state)
+TEST(corners_by_quadrature)
 {
-    (void)state;
     assert_within(height_above(0, 0, 0), 1, 0);
     gsl_integration_cquad_workspace *room = gsl_integration_cquad_workspace_alloc(200);
     uint64_t seed = 1;
@@ -114,9 +109,8 @@ static void test_corners_by_quadrature(void **state)
 }
 
 // Boxes side by side share out the whole sphere, at any scale.
-static void test_parts_add_up_at_any_scale(void **state)
+TEST(parts_add_up_at_any_scale)
 {
-    (void)state;
     const double scales[] = {1, 3e-9, 7e3};
     for (int s = 0; s < 3; s++) {
         const double r = scales[s], whole = 4 * M_PI / 3 * r * r * r;
@@ -141,9 +135,8 @@ static double cap(double radius, double height)
     return M_PI * height * height * (3 * radius - height) / 3;
 }
 
-static void test_a_lens_is_two_caps(void **state)
+TEST(a_lens_is_two_caps)
 {
-    (void)state;
     assert_within(lens_volume(1, 1, 1), 5 * M_PI / 12, 1e-15);
     assert_within(lens_volume(1, 1, 2), 0, 0);
     assert_within(lens_volume(1, 1, 0), 4 * M_PI / 3, 1e-15);
@@ -180,9 +173,8 @@ static double lens_below(double first, double second, struct vector apart, doubl
                        (struct vector){far, far, z});
 }
 
-static void test_cut_lenses_by_quadrature(void **state)
+TEST(cut_lenses_by_quadrature)
 {
-    (void)state;
     gsl_integration_cquad_workspace *room = gsl_integration_cquad_workspace_alloc(400);
     uint64_t seed = 5;
     for (int k = 0; k < 300; k++) {
@@ -205,9 +197,8 @@ static void test_cut_lenses_by_quadrature(void **state)
     gsl_integration_cquad_workspace_free(room);
 }
 
-static void test_lenses_cut_along_and_across(void **state)
+TEST(lenses_cut_along_and_across)
 {
-    (void)state;
     const double whole = lens_volume(1, 1, 1.8);
     const struct vector along = {0, 0, 1.8}, across = {1.8, 0, 0};
     assert_within(lens_below(1, 1, along, 0.9), whole / 2, 1e-13);
@@ -276,9 +267,8 @@ static double bulk_porosity(const struct packing *packing)
     return porosity;
 }
 
-static void test_porosity_of_lattices(void **state)
+TEST(porosity_of_lattices)
 {
-    (void)state;
     const double wanted[] = {1 - M_PI / 6, 1 - M_PI * sqrt(3) / 8, 1 - M_PI / sqrt(18)};
     const double scales[] = {1, 1e-9, 1e3};
     for (enum cell kind = CUBIC; kind <= FACE_CENTRED; kind++)
@@ -290,9 +280,8 @@ static void test_porosity_of_lattices(void **state)
 }
 
 // Walls cut the grains of the bulk; a window of whole cells has the porosity of all.
-static void test_porosity_between_walls(void **state)
+TEST(porosity_between_walls)
 {
-    (void)state;
     struct packing packing = lattice(FACE_CENTRED, 7, 1);
     struct contacts contacts = contacts_of(&packing);
     const double a = 2 * sqrt(2);
@@ -307,9 +296,8 @@ static void test_porosity_between_walls(void **state)
 }
 
 // Layers of spheres: section pi (1 - z^2) over 4, integrated.
-static void test_slices_of_a_cubic_lattice(void **state)
+TEST(slices_of_a_cubic_lattice)
 {
-    (void)state;
     enum { SLICES = 40 };
     for (int periodic = 0; periodic < 2; periodic++) {
         struct packing packing = lattice(CUBIC, 4, 1);
@@ -332,9 +320,8 @@ static void test_slices_of_a_cubic_lattice(void **state)
 }
 
 // Overlaps count once: the solid of slices is that of the spheres less the lenses.
-static void test_slices_hold_the_solid_volume(void **state)
+TEST(slices_hold_the_solid_volume)
 {
-    (void)state;
     enum { SLICES = 37 };
     struct packing packing = lattice(BODY_CENTRED, 4, 1);
     for (int i = 0; i < packing.n_particle; i++)
@@ -355,9 +342,8 @@ static void test_slices_hold_the_solid_volume(void **state)
 }
 
 // One layer: nothing is left out along y, and a square lattice of spheres has 1 - pi/6.
-static void test_porosity_of_one_layer(void **state)
+TEST(porosity_of_one_layer)
 {
-    (void)state;
     struct packing packing = lattice(CUBIC, 6, 1);
     int n = 0;
     for (int i = 0; i < packing.n_particle; i++) {
@@ -374,9 +360,8 @@ static void test_porosity_of_one_layer(void **state)
     packing_free(&packing);
 }
 
-static void test_no_bulk_between_near_walls(void **state)
+TEST(no_bulk_between_near_walls)
 {
-    (void)state;
     struct packing packing = lattice(CUBIC, 2, 1);
     packing.periodic[0] = 0;
     struct window window;
@@ -386,9 +371,8 @@ static void test_no_bulk_between_near_walls(void **state)
 
 // ---- contacts -----------------------------------------------------------------------
 
-static void test_contacts_of_lattices(void **state)
+TEST(contacts_of_lattices)
 {
-    (void)state;
     const int wanted[] = {6, 8, 12};
     for (enum cell kind = CUBIC; kind <= FACE_CENTRED; kind++) {
         struct packing packing = lattice(kind, 3, 1e-6);
@@ -429,9 +413,8 @@ static struct packing chain(int count, struct vector direction)
     return packing;
 }
 
-static void test_fabric_of_a_chain(void **state)
+TEST(fabric_of_a_chain)
 {
-    (void)state;
     const struct vector e = {2. / 7, 3. / 7, 6. / 7};
     struct packing packing = chain(5, e);
     struct contacts contacts = contacts_of(&packing);
@@ -449,9 +432,8 @@ static void test_fabric_of_a_chain(void **state)
 }
 
 // In one plane a triangular lattice is isotropic, a chain is not.
-static void test_fabric_of_one_layer(void **state)
+TEST(fabric_of_one_layer)
 {
-    (void)state;
     const double isotropic[9] = {0.5, 0, 0, 0, 0, 0, 0, 0, 0.5};
     const double line[9] = {[8] = 1};
     assert_within(fabric_deviator(isotropic, true), 0, 0);
@@ -469,9 +451,8 @@ static void test_fabric_of_one_layer(void **state)
 }
 
 // A chain unravels from its ends; a lattice between walls stands; a free grain rattles.
-static void test_rattlers_unravel(void **state)
+TEST(rattlers_unravel)
 {
-    (void)state;
     struct packing packing = lattice(CUBIC, 4, 1);
     for (int i = 0; i < packing.n_particle; i++)
         packing.position[i].z += 0.5;
@@ -514,9 +495,8 @@ static void test_rattlers_unravel(void **state)
 // ---- radial distribution ------------------------------------------------------------
 
 // Neighbours of a grain in the shells of an fcc lattice: r^2 / 2 a^2 = 1, 2, 3, ...
-static void test_shells_of_fcc(void **state)
+TEST(shells_of_fcc)
 {
-    (void)state;
     static const int wanted[] = {12, 6, 24, 12, 24, 8, 48, 6, 36, 24};
     enum { COUNT = 71 };
     const double scales[] = {1, 1e-9};
@@ -590,9 +570,8 @@ static void check_poisson(const uint8_t periodic[3], bool flat)
     }
 }
 
-static void test_poisson_points_are_uncorrelated(void **state)
+TEST(poisson_points_are_uncorrelated)
 {
-    (void)state;
     check_poisson((const uint8_t[3]){1, 1, 1}, false);
     check_poisson((const uint8_t[3]){0, 0, 0}, false);
     check_poisson((const uint8_t[3]){0, 1, 0}, false);
@@ -600,9 +579,8 @@ static void test_poisson_points_are_uncorrelated(void **state)
     check_poisson((const uint8_t[3]){1, 0, 1}, true);
 }
 
-static void test_nothing_is_said_of_nothing(void **state)
+TEST(nothing_is_said_of_nothing)
 {
-    (void)state;
     struct packing packing = {.upper = {1, 1, 1}};
     packing.position = NEW_ARRAY(struct vector, 0);
     packing.radius = NEW_ARRAY(double, 0);
@@ -616,34 +594,4 @@ static void test_nothing_is_said_of_nothing(void **state)
         assert_within(value[k], 1, 0);
     free_contacts(&contacts);
     packing_free(&packing);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_planes_through_the_middle_halve_a_sphere),
-        cmocka_unit_test(test_caps),
-        cmocka_unit_test(test_touching_planes_cut_nothing),
-        cmocka_unit_test(test_a_box_within_is_full),
-        cmocka_unit_test(test_corners_by_quadrature),
-        cmocka_unit_test(test_parts_add_up_at_any_scale),
-        cmocka_unit_test(test_a_lens_is_two_caps),
-        cmocka_unit_test(test_cut_lenses_by_quadrature),
-        cmocka_unit_test(test_lenses_cut_along_and_across),
-        cmocka_unit_test(test_porosity_of_lattices),
-        cmocka_unit_test(test_porosity_between_walls),
-        cmocka_unit_test(test_slices_of_a_cubic_lattice),
-        cmocka_unit_test(test_slices_hold_the_solid_volume),
-        cmocka_unit_test(test_porosity_of_one_layer),
-        cmocka_unit_test(test_no_bulk_between_near_walls),
-        cmocka_unit_test(test_contacts_of_lattices),
-        cmocka_unit_test(test_fabric_of_a_chain),
-        cmocka_unit_test(test_fabric_of_one_layer),
-        cmocka_unit_test(test_rattlers_unravel),
-        cmocka_unit_test(test_shells_of_fcc),
-        cmocka_unit_test(test_poisson_points_are_uncorrelated),
-        cmocka_unit_test(test_nothing_is_said_of_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

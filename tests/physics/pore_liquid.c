@@ -45,9 +45,8 @@ static void place_four(struct four *four)
                                      .radius = four->radius};
 }
 
-static void test_throat_of_touching_grains(void **state)
+TEST(throat_of_touching_grains)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     struct pore_liquid liquid = init(&four.packing);
@@ -68,9 +67,8 @@ static void test_throat_of_touching_grains(void **state)
     pore_liquid_free(&liquid);
 }
 
-static void test_room_between_touching_grains(void **state)
+TEST(room_between_touching_grains)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     struct pore_liquid liquid = init(&four.packing);
@@ -84,9 +82,8 @@ static void test_room_between_touching_grains(void **state)
 }
 
 // Drops the suction just below and lifts it just above 2 gamma / rho of its throats.
-static void test_gas_enters_at_its_radius(void **state)
+TEST(gas_enters_at_its_radius)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     struct pore_liquid liquid = init(&four.packing);
@@ -108,9 +105,8 @@ static void test_gas_enters_at_its_radius(void **state)
 
 // With gas on all sides a pore of volume V pulls its grains together: no net force, and
 // the virial of a pressure -P, - 3 P V.
-static void test_pore_in_gas(void **state)
+TEST(pore_in_gas)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     struct pore_liquid liquid = init(&four.packing);
@@ -131,9 +127,8 @@ static void test_pore_in_gas(void **state)
     pore_liquid_free(&liquid);
 }
 
-static void test_pore_inside_out(void **state)
+TEST(pore_inside_out)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     struct pore_liquid liquid = init(&four.packing);
@@ -173,9 +168,8 @@ static struct packing layer(double noise)
     return packing;
 }
 
-static void test_void_of_a_lattice(void **state)
+TEST(void_of_a_lattice)
 {
-    (void)state;
     struct packing packing = layer(0);
     struct pore_liquid liquid = init(&packing);
     const double share = 1 - M_PI / 6, whole = 8 * R * R * R * SIDE * SIDE * (HIGH - 1);
@@ -189,9 +183,8 @@ static void test_void_of_a_lattice(void **state)
 
 // Down on the surface as a whole, whatever its shape; sideways nothing; and gas inside
 // adds nothing. Also when grains have moved.
-static void test_net_pull_of_a_surface(void **state)
+TEST(net_pull_of_a_surface)
 {
-    (void)state;
     uint64_t seed = 5;
     struct packing packing = layer(0.5);
     struct pore_liquid liquid = init(&packing);
@@ -221,9 +214,8 @@ static void test_net_pull_of_a_surface(void **state)
 }
 
 // The widest throats first, until they have held what is wanted.
-static void test_widest_first(void **state)
+TEST(widest_first)
 {
-    (void)state;
     struct packing packing = layer(0.5);
     struct pore_liquid liquid = init(&packing);
     uint8_t *which = NEW_ARRAY(uint8_t, liquid.n);
@@ -241,9 +233,8 @@ static void test_widest_first(void **state)
     free(which);
 }
 
-static void test_too_few_grains(void **state)
+TEST(too_few_grains)
 {
-    (void)state;
     struct four four;
     place_four(&four);
     four.packing.n_particle = 3;
@@ -252,21 +243,4 @@ static void test_too_few_grains(void **state)
     assert_int_equal(pore_liquid_init(&liquid, &four.packing, &reason),
                      STATUS_BAD_DATA);
     pore_liquid_free(&liquid);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_throat_of_touching_grains),
-        cmocka_unit_test(test_room_between_touching_grains),
-        cmocka_unit_test(test_gas_enters_at_its_radius),
-        cmocka_unit_test(test_pore_in_gas),
-        cmocka_unit_test(test_pore_inside_out),
-        cmocka_unit_test(test_void_of_a_lattice),
-        cmocka_unit_test(test_net_pull_of_a_surface),
-        cmocka_unit_test(test_widest_first),
-        cmocka_unit_test(test_too_few_grains),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,11 +20,17 @@ struct scene {
     double weight[POINTS];
 };
 
-static gsl_rng *generator;
+// One for all tests, which so draw different scenes.
+static gsl_rng *generator(void)
+{
+    static gsl_rng *kept;
+    if (!kept) kept = gsl_rng_alloc(gsl_rng_mt19937);
+    return kept;
+}
 
 static double draw(void)
 {
-    return gsl_rng_uniform(generator);
+    return gsl_rng_uniform(generator());
 }
 
 static struct scene random_points(void)
@@ -186,7 +192,7 @@ static void assert_same_in_any_order(const struct scene *scene, const int32_t *i
     int32_t from[POINTS];
     memcpy(from, itself, sizeof from);
     for (int i = POINTS - 1; i > 0; i--) {
-        const unsigned long j = gsl_rng_uniform_int(generator, (unsigned long)i + 1);
+        const unsigned long j = gsl_rng_uniform_int(generator(), (unsigned long)i + 1);
         const int32_t kept = from[i];
         from[i] = from[j];
         from[j] = kept;
@@ -219,27 +225,24 @@ static void check(struct scene scene, bool whole)
     triangulation_free(&triangulation);
 }
 
-static void test_points(void **state)
+TEST(points)
 {
-    (void)state;
     check(random_points(), true);
     check(lattice(), true);
     check(sphere(), true);
     check(reflected(), true);
 }
 
-static void test_weighted(void **state)
+TEST(weighted)
 {
-    (void)state;
     check(weighted(random_points(), 1e-4), true);
     check(weighted(lattice(), 0.125), true);
     check(weighted(random_points(), 0.05), false);
     check(weighted(lattice(), 0.5), false);
 }
 
-static void test_flat(void **state)
+TEST(flat)
 {
-    (void)state;
     const struct scene scene = lattice();
     struct weighted_point points[SIDE * SIDE];
     struct triangulation triangulation;
@@ -248,16 +251,4 @@ static void test_flat(void **state)
     assert_int_equal(triangulate(points, SIDE * SIDE, &triangulation), -1);
     assert_int_equal(triangulate(points, SIDE, &triangulation), -1);
     assert_int_equal(triangulate(points, 1, &triangulation), -1);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_points),
-                                       cmocka_unit_test(test_weighted),
-                                       cmocka_unit_test(test_flat)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    generator = gsl_rng_alloc(gsl_rng_mt19937);
-    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-    gsl_rng_free(generator);
-    return failed;
 }

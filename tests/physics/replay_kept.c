@@ -170,34 +170,29 @@ static void goes_on(enum engine engine, enum support support, int from_weight)
     packing_free(&scene.packing);
 }
 
-static void cycles_go_on(void **state)
+TEST(cycles_go_on)
 {
-    (void)state;
     goes_on(ENGINE_EXPLICIT, SUPPORT_FIXED, 10);
 }
 
-static void cycles_go_on_on_a_wall(void **state)
+TEST(cycles_go_on_on_a_wall)
 {
-    (void)state;
     goes_on(ENGINE_EXPLICIT, SUPPORT_WALL, 1);
 }
 
-static void cycles_go_on_where_nothing_is_held(void **state)
+TEST(cycles_go_on_where_nothing_is_held)
 {
-    (void)state;
     goes_on(ENGINE_EXPLICIT, SUPPORT_FREE, 0);
 }
 
-static void equilibria_go_on(void **state)
+TEST(equilibria_go_on)
 {
-    (void)state;
     goes_on(ENGINE_QUASI_STATIC, SUPPORT_FIXED, 0);
 }
 
 // A pair that hangs: a load that comes at once stretches it to twice what rest does.
-static void nothing_breaks_on_the_way(void **state)
+TEST(nothing_breaks_on_the_way)
 {
-    (void)state;
     for (int is_weaker = 0; is_weaker < 2; is_weaker++) {
         struct packing packing = bonded_pair();
         const struct dem_setup setup = stiff_setup(&packing);
@@ -229,17 +224,4 @@ static void nothing_breaks_on_the_way(void **state)
         response_free(&response);
         packing_free(&packing);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cycles_go_on),
-        cmocka_unit_test(cycles_go_on_on_a_wall),
-        cmocka_unit_test(cycles_go_on_where_nothing_is_held),
-        cmocka_unit_test(equilibria_go_on),
-        cmocka_unit_test(nothing_breaks_on_the_way),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -61,16 +61,14 @@ static bool breaks(double strength, int64_t ramp)
     return broke;
 }
 
-static void at_once_twice_the_load(void **state)
+TEST(at_once_twice_the_load)
 {
-    (void)state;
     assert_true(breaks(1.999, 0));
     assert_false(breaks(2.001, 0));
 }
 
-static void over_a_ramp_as_the_oscillator(void **state)
+TEST(over_a_ramp_as_the_oscillator)
 {
-    (void)state;
     const double periods[] = {0.25, 0.5, 1, 1.5, 2.5, 5};
     for (size_t k = 0; k < sizeof periods / sizeof *periods; k++) {
         const int64_t ramp = llrint(periods[k] * period());
@@ -79,14 +77,4 @@ static void over_a_ramp_as_the_oscillator(void **state)
         if (!breaks(peak - 0.002, ramp) || breaks(peak + 0.002, ramp))
             fail_msg("ramp of %g periods: not %g", periods[k], peak);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(at_once_twice_the_load),
-        cmocka_unit_test(over_a_ramp_as_the_oscillator),
-    };
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,9 +51,8 @@ static double off(const struct contact_pair *pair, const struct local_problem *s
     return most / size;
 }
 
-static void what_is_found_is_an_equilibrium(void **state)
+TEST(what_is_found_is_an_equilibrium)
 {
-    (void)state;
     uint64_t seed = 7;
     int found = 0, slips = 0;
     for (int k = 0; k < 100000; k++) {
@@ -74,12 +73,4 @@ static void what_is_found_is_an_equilibrium(void **state)
         if (!(error < 1e-5)) fail_msg("contact %d: off by %g", k, error);
     }
     assert_true(found > 90000 && slips > 10000);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_found_is_an_equilibrium)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

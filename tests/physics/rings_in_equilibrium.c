@@ -45,9 +45,8 @@ static double most_suction(const double radius[2], double angle, double gap)
     return most;
 }
 
-static void found_or_there_is_none(void **state)
+TEST(found_or_there_is_none)
 {
-    (void)state;
     static const double angle[] = {0, 0.6}, other[] = {1, 4};
     int found = 0, none = 0;
     for (int k = 0; k < 4; k++)
@@ -98,9 +97,8 @@ static double cube(const double radius[2])
 static const double angles[] = {0, 0.6}, others[] = {1, 3};
 
 // A bridge that would shrink under more suction is the ring of liquid of its suction.
-static void a_bridge_is_the_ring_of_its_suction(void **state)
+TEST(a_bridge_is_the_ring_of_its_suction)
 {
-    (void)state;
     static const double gaps[] = {0, 0.01, 0.1};
     int count = 0;
     for (int k = 0; k < 12; k++)
@@ -119,9 +117,8 @@ static void a_bridge_is_the_ring_of_its_suction(void **state)
     assert_true(count > 80);
 }
 
-static void rings_have_a_least_volume(void **state)
+TEST(rings_have_a_least_volume)
 {
-    (void)state;
     const double radius[2] = {1, 2};
     double volume, force, unused;
     const double most = suction_of(radius, 0, 0, 1e-9, &unused);
@@ -130,9 +127,8 @@ static void rings_have_a_least_volume(void **state)
 }
 
 // A ring is found up to the most suction that bridges of any volume have, however near.
-static void rings_are_found_up_to_the_most_suction(void **state)
+TEST(rings_are_found_up_to_the_most_suction)
 {
-    (void)state;
     static const double gaps[] = {0.01, 0.05, 0.2};
     for (int k = 0; k < 12; k++) {
         const double radius[2] = {1, others[k % 2]};
@@ -147,16 +143,4 @@ static void rings_are_found_up_to_the_most_suction(void **state)
             assert_int_equal(force != 0, !above);
         }
     }
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(found_or_there_is_none),
-        cmocka_unit_test(a_bridge_is_the_ring_of_its_suction),
-        cmocka_unit_test(rings_have_a_least_volume),
-        cmocka_unit_test(rings_are_found_up_to_the_most_suction),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

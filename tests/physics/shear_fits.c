@@ -27,9 +27,8 @@ static void profile(double centre, double width, double smoothing, double *r, do
     }
 }
 
-static void test_band_is_found(void **state)
+TEST(band_is_found)
 {
-    (void)state;
     double r[POINTS], y[POINTS];
     for (double width = 0.005; width < 0.05; width *= 2)
         for (double smoothing = 0; smoothing < 0.015; smoothing += 0.005) {
@@ -41,9 +40,8 @@ static void test_band_is_found(void **state)
         }
 }
 
-static void test_no_band(void **state)
+TEST(no_band)
 {
-    (void)state;
     double r[POINTS], y[POINTS];
     profile(0.17, 0.02, 0, r, y);
     assert_false(fit_band(r, y, 3, 0).converged); // too few
@@ -52,9 +50,8 @@ static void test_no_band(void **state)
     assert_false(fit_band(r, y, POINTS, 0).converged);
 }
 
-static void test_band_errors(void **state)
+TEST(band_errors)
 {
-    (void)state;
     const double t = gsl_cdf_tdist_Pinv(0.975, POINTS - 2);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     double r[POINTS], y[POINTS], noisy[POINTS];
@@ -73,9 +70,8 @@ static void test_band_errors(void **state)
     assert_float_equal((double)width / DRAWS, 0.95, COVERAGE_ERROR);
 }
 
-static void test_line_errors(void **state)
+TEST(line_errors)
 {
-    (void)state;
     const double t = gsl_cdf_tdist_Pinv(0.975, POINTS - 2);
     gsl_rng *rng = gsl_rng_alloc(gsl_rng_mt19937);
     double p[POINTS], tau[POINTS];
@@ -108,9 +104,8 @@ static double integrated_share(double u)
 
 // One contact along x from 0 to its length, in cells along x: the share of the cell
 // [a, b] is int_0^1 Phi((b - s l) / h) - Phi((a - s l) / h) ds.
-static void test_line_integral(void **state)
+TEST(line_integral)
 {
-    (void)state;
     const double length = 1,
                  half_width = 1.5; // the default: half a diameter, three times
     struct grid grid = {
@@ -152,14 +147,4 @@ static void test_line_integral(void **state)
     print_message("# largest error of the line integral: %.2g of the contact's\n",
                   worst);
     assert_true(worst < 1e-5);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_band_is_found), cmocka_unit_test(test_no_band),
-        cmocka_unit_test(test_band_errors), cmocka_unit_test(test_line_errors),
-        cmocka_unit_test(test_line_integral)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -36,9 +36,8 @@ static double outside_in_box(double radius, struct vector lower, struct vector u
 
 // The centre inside and outside the box, the sphere inside, poking through faces, edges
 // and corners, and around it all.
-static void boxes_lose_what_the_sphere_takes(void **state)
+TEST(boxes_lose_what_the_sphere_takes)
 {
-    (void)state;
     uint64_t seed = 1;
     for (int trial = 0; trial < 10000; trial++) {
         struct vector lower, upper;
@@ -66,9 +65,8 @@ static struct vector random_point(uint64_t *seed)
 
 // Cut in three from any point of its plane, inside or not; the other way round; at any
 // scale that is a power of two, to the last bit.
-static void triangles_add_up(void **state)
+TEST(triangles_add_up)
 {
-    (void)state;
     uint64_t seed = 2;
     for (int trial = 0; trial < 10000; trial++) {
         const struct vector a = random_point(&seed), b = random_point(&seed),
@@ -91,9 +89,8 @@ static void triangles_add_up(void **state)
 }
 
 // Flat, a point, with the origin in its plane or on an edge's line: nothing, not NaN.
-static void degenerate_triangles_are_nothing(void **state)
+TEST(degenerate_triangles_are_nothing)
 {
-    (void)state;
     const struct vector x = {1, 0, 0}, y = {0, 1, 0}, z = {0, 0, 1};
     assert_true(tetrahedron_outside_ball(0.5, x, x, x) == 0);
     assert_true(tetrahedron_outside_ball(0.5, x, y, y) == 0);
@@ -105,15 +102,4 @@ static void degenerate_triangles_are_nothing(void **state)
     const struct vector p = {1, 1, 0}, q = {1, 1, 1};
     assert_true(fabs(tetrahedron_outside_ball(1, x, p, q) - (8 - 4 * M_PI / 3) / 48) <
                 1e-16);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(boxes_lose_what_the_sphere_takes),
-        cmocka_unit_test(triangles_add_up),
-        cmocka_unit_test(degenerate_triangles_are_nothing),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

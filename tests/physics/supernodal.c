@@ -65,9 +65,8 @@ static void solve(struct supernodal *factor, double *x)
     supernodal_backward(factor, half, x);
 }
 
-static void answers_are_those_of_the_matrix(void **state)
+TEST(answers_are_those_of_the_matrix)
 {
-    (void)state;
     struct springs *s = make_springs(0.1);
     struct supernodal *factor = supernodal_create(N, s->start, s->row);
     double x[N], product[N];
@@ -85,9 +84,8 @@ static void answers_are_those_of_the_matrix(void **state)
 }
 
 // b^T A^-1 c by halves and by solving.
-static void halves_make_the_same_products(void **state)
+TEST(halves_make_the_same_products)
 {
-    (void)state;
     struct springs *s = make_springs(0.1);
     struct supernodal *factor = supernodal_create(N, s->start, s->row);
     assert_true(supernodal_factor(factor, s->value));
@@ -131,9 +129,8 @@ static void halves_make_the_same_products(void **state)
 
 // Nothing holds the cube: a pivot is rounding, the answer to a load in balance a number
 // all the same. A matrix that is none is refused.
-static void a_pivot_of_rounding_stays_a_number(void **state)
+TEST(a_pivot_of_rounding_stays_a_number)
 {
-    (void)state;
     struct springs *s = make_springs(0);
     struct supernodal *factor = supernodal_create(N, s->start, s->row);
     assert_true(supernodal_factor(factor, s->value));
@@ -150,9 +147,8 @@ static void a_pivot_of_rounding_stays_a_number(void **state)
 }
 
 // Without a diagonal, so that pivots must be sought.
-static void dense_systems(void **state)
+TEST(dense_systems)
 {
-    (void)state;
     enum { MOST = 70 };
     for (int n = 2; n <= MOST; n++) {
         static double whole[MOST][MOST], matrix[MOST][MOST];
@@ -177,9 +173,8 @@ static void dense_systems(void **state)
 }
 
 // Vectors of four numbers or of eight: the same digits.
-static void vectors_of_any_width(void **state)
+TEST_WHERE(has_avx512(), "no wide vectors here", vectors_of_any_width)
 {
-    (void)state;
     enum { M = 51, COLUMNS = 13, K = 17 };
     double a[M * K + 8], sum[2][BATCH][BATCH] = {{{0}}}, c[2][M * COLUMNS] = {{0}};
     double d[2][M * M] = {{0}};
@@ -219,16 +214,4 @@ static void vectors_of_any_width(void **state)
             assert_true(fabs(d[1][j * M + i] - expected) < 1e-12);
             assert_true(d[0][j * M + i] == d[1][j * M + i]);
         }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(answers_are_those_of_the_matrix),
-        cmocka_unit_test(halves_make_the_same_products),
-        cmocka_unit_test(a_pivot_of_rounding_stays_a_number),
-        UNIT_TEST_WHERE(has_avx512(), "no wide vectors here", vectors_of_any_width),
-        cmocka_unit_test(dense_systems)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -73,9 +73,8 @@ static const struct radius_distribution laws[] = {
      .second_share = 0.7,
      .seed = 3}};
 
-static void each_law_is_met(void **state)
+TEST(each_law_is_met)
 {
-    (void)state;
     for (int k = 0; k < 4; k++)
         assert_drawn_from(&laws[k]);
 }
@@ -111,9 +110,8 @@ static double covariance(const struct network *network, int steps)
 
 // The mean over realisations, for each has but some hundred independent regions; within
 // four of its own standard errors.
-static void neighbours_are_alike(void **state)
+TEST(neighbours_are_alike)
 {
-    (void)state;
     enum { REALISATIONS = 12, FARTHEST = 4 };
     double got[FARTHEST + 1][REALISATIONS];
     for (int r = 0; r < REALISATIONS; r++) {
@@ -135,9 +133,8 @@ static void neighbours_are_alike(void **state)
 }
 
 // Correlated radii are the others in another order.
-static void correlation_only_moves_radii(void **state)
+TEST(correlation_only_moves_radii)
 {
-    (void)state;
     for (int k = 0; k < 4; k++) {
         struct radius_distribution law = laws[k];
         struct network free_ones = drawn(&law);
@@ -157,9 +154,8 @@ static void correlation_only_moves_radii(void **state)
 
 // What is left of normal radii that may be below 0, beside Simpson's rule, and beside
 // what is drawn.
-static void what_is_cut_is_told(void **state)
+TEST(what_is_cut_is_told)
 {
-    (void)state;
     enum { STEPS = 100000 };
     for (double spread = 0.2; spread < 2; spread += 0.3) {
         double sum[3] = {0};
@@ -181,26 +177,12 @@ static void what_is_cut_is_told(void **state)
     assert_true(cut_normal(&mean, &deviation) == 0 && mean == 1);
 }
 
-static void what_cannot_be_drawn_is_refused(void **state)
+TEST(what_cannot_be_drawn_is_refused)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 3, SPACING);
     struct reason reason;
     struct radius_distribution law = {
         .law = RADIUS_UNIFORM, .mean = 1, .deviation = 0.6, .seed = 1};
     assert_int_equal(draw_radii(&network, &law, &reason), STATUS_BAD_DATA);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_law_is_met),
-        cmocka_unit_test(neighbours_are_alike),
-        cmocka_unit_test(correlation_only_moves_radii),
-        cmocka_unit_test(what_is_cut_is_told),
-        cmocka_unit_test(what_cannot_be_drawn_is_refused),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -89,9 +89,8 @@ static double moment_from(const struct network *network, double radius, int powe
     return sum;
 }
 
-static void test_bundle_of_tubes(void **state)
+TEST(bundle_of_tubes)
 {
-    (void)state;
     struct network network = bundle_of_tubes();
     struct result result = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
     assert_int_equal(result.status, 0);
@@ -129,9 +128,8 @@ static void test_bundle_of_tubes(void **state)
 }
 
 // Upright columns that exchange nothing, as all are alike.
-static void test_lattice_of_equal_throats(void **state)
+TEST(lattice_of_equal_throats)
 {
-    (void)state;
     const int n[3] = {5, 4, 7};
     const double spacing = 5e-7, r = 0.2 * spacing;
     struct network network = lattice_network(n[0], n[1], n[2], spacing);
@@ -160,9 +158,8 @@ static void test_lattice_of_equal_throats(void **state)
 }
 
 // Resistances add up, over twelve decades of conductances.
-static void test_chain_of_tubes(void **state)
+TEST(chain_of_tubes)
 {
-    (void)state;
     enum { N = 40 };
     struct network network = lattice_network(1, 1, N + 1, 1);
     uint64_t seed = 8;
@@ -270,9 +267,8 @@ static void check_states(const struct network *network, const struct result *res
     free(open);
 }
 
-static void test_random_lattices(void **state)
+TEST(random_lattices)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 5; seed++) {
         struct network network = lattice_network(4, 4, 4, 1);
         randomise_radii(&network, 1, 0.9, seed);
@@ -289,9 +285,8 @@ static void test_random_lattices(void **state)
 
 // --- symmetry ------------------------------------------------------------------------
 
-static void test_ends_may_change_places(void **state)
+TEST(ends_may_change_places)
 {
-    (void)state;
     struct network network = lattice_network(6, 5, 7, 1);
     randomise_radii(&network, 1, 0.8, 4);
     struct result down = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
@@ -320,9 +315,8 @@ static void test_ends_may_change_places(void **state)
 }
 
 // Of more nodes than a direct solver is given, numbered from the one end or the other.
-static void test_large_networks_conduct_alike_both_ways(void **state)
+TEST(large_networks_conduct_alike_both_ways)
 {
-    (void)state;
     struct network network = lattice_network(12, 13, 14, 1);
     randomise_radii(&network, 1, 0.9, 5);
     struct result down = invaded(&network, WALL_Z_UPPER, WALL_Z_LOWER, true);
@@ -334,9 +328,8 @@ static void test_large_networks_conduct_alike_both_ways(void **state)
     network_free(&network);
 }
 
-static void test_no_way_is_refused(void **state)
+TEST(no_way_is_refused)
 {
-    (void)state;
     struct network network = lattice_network(3, 3, 4, 1);
     for (int t = 0; t < network.n_throat; t++) { // two pieces, one above the other
         const int32_t *ends = network.throat_nodes[t];
@@ -353,18 +346,4 @@ static void test_no_way_is_refused(void **state)
     assert_non_null(strstr(result.reason.text, "at the inlet and at the outlet"));
     result_free(&result);
     network_free(&network);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bundle_of_tubes),
-        cmocka_unit_test(test_lattice_of_equal_throats),
-        cmocka_unit_test(test_chain_of_tubes),
-        cmocka_unit_test(test_random_lattices),
-        cmocka_unit_test(test_ends_may_change_places),
-        cmocka_unit_test(test_large_networks_conduct_alike_both_ways),
-        cmocka_unit_test(test_no_way_is_refused)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -147,31 +147,19 @@ static double error_of(double size, int steps, bool large, double *depth)
     return error / most;
 }
 
-static void small_displacements(void **state)
+TEST(small_displacements)
 {
-    (void)state;
     double depth;
     const double error = error_of(1e-13, 200, false, &depth);
     print_message("# moved by %g radii: engines %g apart\n", depth, error);
     assert_true(error < 1e-6);
 }
 
-static void large_displacements(void **state)
+TEST(large_displacements)
 {
-    (void)state;
     double depth;
     const double error = error_of(2e-6, 2000, true, &depth);
     print_message("# moved by %g radii: engines %g apart\n", depth, error);
     assert_true(depth > 0.02);
     assert_true(error < 1e-5);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(small_displacements),
-        cmocka_unit_test(large_displacements),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,16 +100,8 @@ static void check(bool in_order)
     block_rows_free(&rows);
 }
 
-static void as_in_full(void **state)
+TEST(as_in_full)
 {
-    (void)state;
     check(true);
     check(false);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(as_in_full)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

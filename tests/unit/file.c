@@ -27,9 +27,8 @@ static int make_file(char name[32])
     return descriptor;
 }
 
-static void same_bytes_through_a_pipe(void **state)
+TEST(same_bytes_through_a_pipe)
 {
-    (void)state;
     char name[32], command[64];
     close(make_file(name));
     struct bytes mapped = read_whole(name);
@@ -51,9 +50,8 @@ static void same_bytes_through_a_pipe(void **state)
     unlink(name);
 }
 
-static void cut_short(void **state)
+TEST(cut_short)
 {
-    (void)state;
     char name[32];
     const int descriptor = make_file(name);
     fflush(NULL);
@@ -70,12 +68,4 @@ static void cut_short(void **state)
     assert_int_equal(WEXITSTATUS(end), STATUS_IO);
     close(descriptor);
     unlink(name);
-}
-
-int main(void)
-{
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    const struct CMUnitTest tests[] = {cmocka_unit_test(same_bytes_through_a_pipe),
-                                       cmocka_unit_test(cut_short)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

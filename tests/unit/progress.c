@@ -8,9 +8,8 @@
 static const double SINCE = 0.1; // s, between two draws
 
 // Work that takes 100 s at one speed.
-static void is_exact_where_work_is_even(void **state)
+TEST(is_exact_where_work_is_even)
 {
-    (void)state;
     double left = -1;
     for (double time = 1; time < 100; time += SINCE) {
         left = progress_time_left(time, time / 100, left, SINCE);
@@ -21,9 +20,8 @@ static void is_exact_where_work_is_even(void **state)
 // Five portions of 12 s each, of which one hears only at its end: at the mean speed so
 // far the time left would rise from 0 to 48 s within the first, and fall by a half at
 // its end.
-static void does_not_jump_where_it_is_not(void **state)
+TEST(does_not_jump_where_it_is_not)
 {
-    (void)state;
     double left = -1;
     for (double time = 1; time < 60; time += SINCE) {
         const double fraction = 0.2 * floor(time / 12) + 0.02;
@@ -33,12 +31,4 @@ static void does_not_jump_where_it_is_not(void **state)
         if (before >= 0) assert_within(left, before, 0.06 * before + 2 * SINCE);
     }
     assert_true(left < 15);
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(is_exact_where_work_is_even),
-                                       cmocka_unit_test(does_not_jump_where_it_is_not)};
-    cmocka_set_message_output(CM_OUTPUT_TAP);
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,9 +3,8 @@
 #include "../test.h"
 #include "report/html.h"
 
-static void numbers_as_one_writes_them(void **state)
+TEST(numbers_as_one_writes_them)
 {
-    (void)state;
     static const struct {
         double value;
         int digits;
@@ -20,10 +19,4 @@ static void numbers_as_one_writes_them(void **state)
         assert_string_equal(plain(number[k].value, number[k].digits, text),
                             number[k].text);
     }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(numbers_as_one_writes_them)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
 }
