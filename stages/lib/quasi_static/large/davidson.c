@@ -156,15 +156,8 @@ static double find_mode(struct quasi_static *qs)
 int davidson_softest_mode(struct quasi_static *qs, double *stiffness)
 {
     const double found = find_mode(qs);
-    int softest = 0;
-    for (int i = 0; i < qs->n; i++)
-        if (displacement_size(qs->step[i]) > displacement_size(qs->step[softest]))
-            softest = i;
-    const double size = displacement_size(qs->step[softest]);
-    for (int i = 0; i < qs->n && size > 0; i++)
-        qs->step[i] = displacement_scaled(1 / size, qs->step[i]);
     if (stiffness) *stiffness = found;
-    return softest;
+    return normalise_mode(qs);
 }
 
 // To rounding, which goes by the stabilisation.

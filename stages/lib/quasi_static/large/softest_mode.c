@@ -30,12 +30,7 @@ int find_softest_mode(struct quasi_static *qs)
     for (int round = 0; round < ROUNDS; round++) {
         stiffness_begin(qs->matrix, qs->step);
         stiffness_finish(qs->matrix, qs->step);
-        for (int i = softest = 0; i < qs->n; i++)
-            if (displacement_size(qs->step[i]) > displacement_size(qs->step[softest]))
-                softest = i;
-        const double size = displacement_size(qs->step[softest]);
-        for (int i = 0; i < qs->n; i++)
-            qs->step[i] = displacement_scaled(1 / size, qs->step[i]);
+        softest = normalise_mode(qs);
     }
     return softest;
 }
