@@ -119,14 +119,22 @@ static void list_menisci(struct kelvin_viscous *coupling, struct occupancy *occu
     }
 }
 
-// In each cluster without a moving meniscus that did not wait before, the meniscus that
-// gas enters most easily begins to move.
-static void begin_lone(struct kelvin_viscous *coupling, struct occupancy *occupancy)
+// Which clusters (n_id) have a moving meniscus.
+static bool *clusters_that_move(const struct kelvin_viscous *coupling,
+                                const struct occupancy *occupancy)
 {
     bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
     for (int k = 0; k < coupling->n; k++)
         any[occupancy->clusters.of_throat[throat_of(coupling, k)]] |=
             coupling->flow->moving[throat_of(coupling, k)];
+    return any;
+}
+
+// In each cluster without a moving meniscus that did not wait before, the meniscus that
+// gas enters most easily begins to move.
+static void begin_lone(struct kelvin_viscous *coupling, struct occupancy *occupancy)
+{
+    bool *any = clusters_that_move(coupling, occupancy);
     for (int k = 0; k < coupling->n; k++) {
         const int cluster = occupancy->clusters.of_throat[throat_of(coupling, k)];
         const int first = clusters_invasion_throat(&occupancy->clusters, cluster);
@@ -400,10 +408,7 @@ static void drop_noise(const struct kelvin_viscous *coupling,
 
 static void keep(struct kelvin_viscous *coupling, const struct occupancy *occupancy)
 {
-    bool *any = NEW_ARRAY(bool, occupancy->clusters.n_id);
-    for (int k = 0; k < coupling->n; k++)
-        any[occupancy->clusters.of_throat[throat_of(coupling, k)]] |=
-            coupling->flow->moving[throat_of(coupling, k)];
+    bool *any = clusters_that_move(coupling, occupancy);
     for (int k = 0; k < coupling->n; k++) {
         const int throat = throat_of(coupling, k);
         coupling->excess[throat] = fmax(coupling->flow->excess[throat], 0);
