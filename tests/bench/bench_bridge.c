@@ -39,7 +39,7 @@ static void draw(struct sample *sample, const struct bridge_table *table)
         // By another way than it is solved below, which tells how well it is solved.
         const double way[2] = {0.9 * sample->gap[k], sample->gap[k]};
         struct equilibrium exact[2];
-        if (follow_branch(&bodies, volume, 2, way, exact)) exit(1);
+        if (follow_to_turning(&bodies, volume, 2, way, exact)) exit(1);
         sample->exact[k] = 2 * M_PI * arc_force(&bodies, &exact[1].arc);
     }
 }

@@ -372,9 +372,10 @@ static struct unknowns extrapolated(const struct state *before,
     return to;
 }
 
-static enum status follow(const struct question *asked, int count, const double *gap,
-                          struct equilibrium *found)
+enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
+                              const double *gap, struct equilibrium *found)
 {
+    const struct question *asked = &(struct question){bodies, volume, true};
     struct state before = {0}, last = {0};
     for (int k = 0; k < count; k++) {
         struct state next = last;
@@ -396,16 +397,4 @@ static enum status follow(const struct question *asked, int count, const double 
         last = next;
     }
     return STATUS_OK;
-}
-
-enum status follow_branch(const struct bodies *bodies, double volume, int count,
-                          const double *gap, struct equilibrium *found)
-{
-    return follow(&(struct question){bodies, volume, false}, count, gap, found);
-}
-
-enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
-                              const double *gap, struct equilibrium *found)
-{
-    return follow(&(struct question){bodies, volume, true}, count, gap, found);
 }

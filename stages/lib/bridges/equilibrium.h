@@ -7,7 +7,7 @@
 // grows along it, and turns back at the widest gap; bridges beyond the turning point
 // exist and are not stable. Between equal bodies a second family, without mirror
 // symmetry, may take over before. Functions at a volume start from contact and follow
-// the branch, so many bridges cost less together (follow_branch).
+// the branch, so many bridges cost less together (follow_to_turning).
 #ifndef CRAQUELURE_EQUILIBRIUM_H
 #define CRAQUELURE_EQUILIBRIUM_H
 
@@ -46,12 +46,10 @@ enum status find_turning(const struct bodies *bodies, double volume,
 enum status find_at_curvature(const struct bodies *bodies, double curvature, double gap,
                               struct equilibrium *found, double *volume);
 
-// Bridges at COUNT rising gaps from contact to rupture, each from those before it:
-// several times faster than one by one where gaps are close. Gaps beyond rupture by
-// less than 1e-4 of it get the last bridge.
-enum status follow_branch(const struct bodies *bodies, double volume, int count,
-                          const double *gap, struct equilibrium *found);
-// The same up to the turning point: those past the break of symmetry are not stable.
+// Bridges at COUNT rising gaps from contact to the turning point, each from those
+// before it: several times faster than one by one where gaps are close. Gaps beyond it
+// by less than 1e-4 of it get the last bridge. Those past the break of symmetry are not
+// stable.
 enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
                               const double *gap, struct equilibrium *found);
 
