@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers that look like chance and are the same on every machine.
-#ifndef CRAQUELURE_TESTS_RANDOM_H
-#define CRAQUELURE_TESTS_RANDOM_H
+#pragma once
 
 #include "basics/memory.h"
 
@@ -27,5 +26,3 @@ static inline int *shuffled(int n, uint64_t *state)
     }
     return order;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cmocka, with what it wants included before it, and numbers that are to be near each
 // other.
-#ifndef CRAQUELURE_TEST_H
-#define CRAQUELURE_TEST_H
+#pragma once
 
 // clang-format off
 #include <setjmp.h>
@@ -46,5 +45,3 @@ static inline void assert_close(double got, double wanted, double fraction)
 {
     assert_within(got, wanted, fraction * fabs(wanted));
 }
-
-#endif

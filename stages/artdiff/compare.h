@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In what two artifacts differ. Provenance is left out: what was asked for may differ,
 // what came out is compared.
-#ifndef CRAQUELURE_COMPARE_H
-#define CRAQUELURE_COMPARE_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -36,5 +35,3 @@ void differs(struct comparison *comparison, const char *format, ...)
 // or of LEAST.
 bool are_near(const struct comparison *comparison, double least, double one,
               double other);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Force against separation of one bridge, as JSON.
-#ifndef CRAQUELURE_CURVE_H
-#define CRAQUELURE_CURVE_H
+#pragma once
 
 #include "basics/status.h"
 #include "bridges/bridges.h"
@@ -25,5 +24,3 @@ struct curve_request {
 enum status put_curve(json_t *report, const struct bridge *bridge,
                       enum bridge_model model, const struct curve_request *request,
                       struct reason *reason);
-
-#endif

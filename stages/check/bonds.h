@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether bonds join the grains to one body, and what supports it.
-#ifndef CRAQUELURE_CHECK_BONDS_H
-#define CRAQUELURE_CHECK_BONDS_H
+#pragma once
 
 #include "geometry/packing_check.h"
 
@@ -22,5 +21,3 @@ struct bond_facts bond_facts(const struct packing *packing);
 // below which grains should be held. Nothing is said of fewer than two grains.
 void judge_bonds(const struct packing *packing, const struct bond_facts *facts, int n,
                  double bottom, struct findings *findings);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Places written with too few digits to tell which grains touch.
-#ifndef CRAQUELURE_ROUNDED_H
-#define CRAQUELURE_ROUNDED_H
+#pragma once
 
 #include "geometry/packing_check.h"
 
@@ -10,5 +9,3 @@
 // number, but more than the gap. Not for lattices.
 void judge_rounding(const struct packing *packing, const struct packing_facts *facts,
                     double gap, struct findings *findings);
-
-#endif

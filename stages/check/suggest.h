@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parameters of dem-replay to start with for grains of this size, and what a run
 // costs.
-#ifndef CRAQUELURE_CHECK_SUGGEST_H
-#define CRAQUELURE_CHECK_SUGGEST_H
+#pragma once
 
 #include "geometry/bond_numbers.h"
 #include "geometry/packing_check.h"
@@ -37,5 +36,3 @@ json_t *suggest(const struct material *material, const struct packing *packing,
 // [{"stage": ..., "seconds": ..., "megabytes": ...}, ...] for N grains on one core, by
 // costs/costs.h: what --estimate of these stages says. The caller owns it.
 json_t *expected_cost(int n);
-
-#endif

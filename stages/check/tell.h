@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The findings, for people and for programs.
-#ifndef CRAQUELURE_CHECK_TELL_H
-#define CRAQUELURE_CHECK_TELL_H
+#pragma once
 
 #include "bonds.h"
 #include "suggest.h"
@@ -30,5 +29,3 @@ void tell(const struct checked *checked, int wrong);
 // The same as a document of schemas/check.json; the caller owns it. Suggestions and
 // cost are null if WRONG is not 0.
 json_t *checked_json(const struct checked *checked, int wrong);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Connected cracks: broken bonds that share a grain are one crack.
-#ifndef CRAQUELURE_CRACKSTATS_CLUSTERS_H
-#define CRAQUELURE_CRACKSTATS_CLUSTERS_H
+#pragma once
 
 #include "run.h"
 #include "sizes.h"
@@ -18,5 +17,3 @@ struct clusters {
 // followed bond by bond. The cracks of RUN are taken at its end, without those of the
 // weight alone. Sizes come in the order of the roots. O((grains + cracks) log grains).
 struct clusters find_clusters(const struct run *run, struct sizes *sizes);
-
-#endif

@@ -2,8 +2,7 @@
 // The damage of a layer seen from above, in upright columns half a mean diameter wide,
 // or nearly so, as whole ones fill the box (docs/craquelure.md). The map lies in x and
 // y, and z is up; all is measured before anything has moved.
-#ifndef CRAQUELURE_CRACKSTATS_COLUMNS_H
-#define CRAQUELURE_CRACKSTATS_COLUMNS_H
+#pragma once
 
 #include "run.h"
 
@@ -45,5 +44,3 @@ int column_of_bond(const struct columns *columns, const struct run *run, int bon
 // caller frees it.
 double *column_damage(const struct columns *columns, const struct run *run,
                       const uint8_t *intact);
-
-#endif

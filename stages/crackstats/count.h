@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Counting cracks [K Table 5.2, Figs. 5.18, 5.19].
-#ifndef CRAQUELURE_COUNT_H
-#define CRAQUELURE_COUNT_H
+#pragma once
 
 #include "run.h"
 
@@ -57,5 +56,3 @@ void count_all(double all[MODE_COUNT], const struct counts *counts);
 // of time are of the time of the last load; a run that ends at 0 has all cracks in the
 // first.
 void count_cracks(struct counts *counts, const struct run *run, struct classes classes);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the body as a whole has changed its shape [K 5.10]: shrinkage and spring-back.
-#ifndef CRAQUELURE_CRACKSTATS_DEFORMATION_H
-#define CRAQUELURE_CRACKSTATS_DEFORMATION_H
+#pragma once
 
 #include "run.h"
 
@@ -17,5 +16,3 @@ struct deformation {
 // too; 0 along an axis in which all lie in one plane, or along which it leads around
 // the box. All NAN when it has fewer than four grains.
 struct deformation body_deformation(const struct run *run, int s);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether cracks open where the liquid leaves [K 5.8, Fig. 5.19].
-#ifndef CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
-#define CRAQUELURE_CRACKSTATS_DRYING_FRONT_CORRELATION_H
+#pragma once
 
 #include "count.h"
 #include "liquid.h"
@@ -39,5 +38,3 @@ void drying_front_sum(struct drying_front *sum, const struct drying_front *front
 // the same everywhere.
 double front_correlation(const double *first, const double *slice, const double *place,
                          struct classes classes);
-
-#endif

@@ -2,8 +2,7 @@
 // An ensemble of runs: the statistics of each, and the sums of their tables. Runs are
 // added one by one and forgotten: only their statistics, patterns and the sizes of
 // their clusters and fragments stay. Sums are made in the order of the inputs.
-#ifndef CRAQUELURE_CRACKSTATS_ENSEMBLE_H
-#define CRAQUELURE_CRACKSTATS_ENSEMBLE_H
+#pragma once
 
 #include "count.h"
 #include "deformation.h"
@@ -43,5 +42,3 @@ void ensemble_free(struct ensemble *ensemble);
 // needed afterwards. The caller has checked that they belong together.
 void ensemble_add(struct ensemble *ensemble, const struct run *run,
                   const struct liquid *liquid);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Fragments: sets of grains joined by intact bonds, known by their lowest grain.
-#ifndef CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
-#define CRAQUELURE_CRACKSTATS_FRAGMENT_COUNTS_H
+#pragma once
 
 #include "run.h"
 #include "sizes.h"
@@ -22,5 +21,3 @@ uint8_t *largest_fragment(const struct packing *packing, const uint8_t *intact);
 // O(grains + bonds).
 struct fragment_counts count_fragments(const struct packing *packing,
                                        const uint8_t *intact, struct sizes *sizes);
-
-#endif

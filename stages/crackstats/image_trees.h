@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains joined by bonds, and which periodic image of the others each of them lies in.
-#ifndef CRAQUELURE_CRACKSTATS_IMAGE_TREES_H
-#define CRAQUELURE_CRACKSTATS_IMAGE_TREES_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -25,5 +24,3 @@ int find_image_root(const struct image_tree *trees, int grain, struct image *ima
 
 // Joins grains A and B by a bond to the image B_FROM_A of B, seen from A.
 void join_images(struct image_tree *trees, int a, int b, struct image b_from_a);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Junctions: where three or more polygons meet, and the angles between cracks there.
-#ifndef CRAQUELURE_CRACKSTATS_JUNCTIONS_H
-#define CRAQUELURE_CRACKSTATS_JUNCTIONS_H
+#pragma once
 
 #include "polygons.h"
 
@@ -19,5 +18,3 @@ struct junctions {
 // another gives 180 and counts as T.
 struct junctions find_junctions(const struct columns *columns,
                                 const struct polygons *polygons);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where the liquid is while cracks open: slices of the drying network over time.
-#ifndef CRAQUELURE_CRACKSTATS_LIQUID_H
-#define CRAQUELURE_CRACKSTATS_LIQUID_H
+#pragma once
 
 #include "network/drying_record.h"
 
@@ -25,5 +24,3 @@ double *slice_saturations(const struct liquid *liquid, int n_slice, const double
                           int n_time);
 
 void liquid_free(struct liquid *liquid);
-
-#endif

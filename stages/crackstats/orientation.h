@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Directions of cracked bonds; the crack itself is perpendicular to its bond.
-#ifndef CRAQUELURE_CRACKSTATS_ORIENTATION_H
-#define CRAQUELURE_CRACKSTATS_ORIENTATION_H
+#pragma once
 
 #include "run.h"
 
@@ -18,5 +17,3 @@ struct orientation {
 // upright, along z. Cracks between coincident grains have no direction and are left out
 // (their bonds count as upright). O(bonds + cracks). n and -n are one direction.
 void add_orientation(struct orientation *orientation, const struct run *run);
-
-#endif

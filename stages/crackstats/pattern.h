@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The crack pattern of a layer seen from above, of one run: its map, for pictures, and
 // its statistics (docs/craquelure.md).
-#ifndef CRAQUELURE_CRACKSTATS_PATTERN_H
-#define CRAQUELURE_CRACKSTATS_PATTERN_H
+#pragma once
 
 #include "polygons.h"
 
@@ -29,5 +28,3 @@ struct pattern {
 // pattern, where there is none.
 struct pattern find_pattern(const struct run *run, int n_stage, double *value);
 void pattern_free(struct pattern *pattern);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A layer parted into polygons by crack columns (docs/craquelure.md).
-#ifndef CRAQUELURE_CRACKSTATS_POLYGONS_H
-#define CRAQUELURE_CRACKSTATS_POLYGONS_H
+#pragma once
 
 #include "columns.h"
 
@@ -31,5 +30,3 @@ void polygons_free(struct polygons *polygons);
 // bonds, by the bonds between them, of at least h^3 / 2 d^3 grains.
 int count_islands(const struct columns *columns, const struct run *run,
                   const uint8_t *intact);
-
-#endif

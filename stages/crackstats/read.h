@@ -2,8 +2,7 @@
 // Reads runs and their drying from artifacts. They end the program if something is
 // wrong that a schema cannot express: a bond that breaks twice or after the end, a
 // drying without a step.
-#ifndef CRAQUELURE_CRACKSTATS_READ_H
-#define CRAQUELURE_CRACKSTATS_READ_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "liquid.h"
@@ -18,5 +17,3 @@ struct run read_run(const struct artifact *response);
 // Reads the network and the history of a drying, which must have a step (else status
 // 65). The caller frees it with liquid_free.
 struct liquid read_liquid(const struct artifact *drying);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report crackstats.json of an ensemble.
-#ifndef CRAQUELURE_CRACKSTATS_REPORT_H
-#define CRAQUELURE_CRACKSTATS_REPORT_H
+#pragma once
 
 #include "ensemble.h"
 
@@ -28,5 +27,3 @@ void report_statistics(json_t *report, const struct ensemble *ensemble,
 
 // Whole numbers as integers: one run has no halves. What is not finite is null.
 json_t *json_value(double value);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One run, as read from its response artifact; read.h says what has been checked.
-#ifndef CRAQUELURE_CRACKSTATS_RUN_H
-#define CRAQUELURE_CRACKSTATS_RUN_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -44,5 +43,3 @@ uint8_t *bonds_left(const struct run *run);
 
 // Frees what the run owns and empties it.
 void run_free(struct run *run);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The statistics of one run, over which means, intervals and tests are made.
-#ifndef CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
-#define CRAQUELURE_CRACKSTATS_RUN_STATISTICS_H
+#pragma once
 
 // Cracks are broken bonds; those that the weight alone broke before drying do not
 // count. Three in a row are normal, shear and total, which note_modes in ensemble.c
@@ -66,5 +65,3 @@ extern const struct statistic_name statistic_names[STATISTIC_COUNT];
 struct run_statistics {
     double value[STATISTIC_COUNT];
 };
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The scatter over the runs of the counts in each period, slice, interval and
 // inclination: kept as sums of squares, so that no run must be remembered.
-#ifndef CRAQUELURE_CRACKSTATS_SCATTER_H
-#define CRAQUELURE_CRACKSTATS_SCATTER_H
+#pragma once
 
 #include "count.h"
 #include "orientation.h"
@@ -34,5 +33,3 @@ void squares_add(struct squares *squares, const struct counts *run,
 // their difference has no rounding error. sqrt((n sum of squares - sum^2) / (n (n -
 // 1))), 0 exactly where all runs are alike.
 double counts_deviation(double sum, double squares, int runs);
-
-#endif

@@ -2,8 +2,7 @@
 // Sizes of clusters or fragments, collected over runs: one number each, in broken bonds
 // or grains, in the order in which they are found, run after run. The report sorts them
 // and counts equal ones.
-#ifndef CRAQUELURE_CRACKSTATS_SIZES_H
-#define CRAQUELURE_CRACKSTATS_SIZES_H
+#pragma once
 
 #include "basics/memory.h"
 
@@ -19,5 +18,3 @@ static inline void add_size(struct sizes *sizes, int size)
     GROW_ARRAY(sizes->size, sizes->count, sizes->capacity);
     sizes->size[sizes->count++] = size;
 }
-
-#endif

@@ -2,8 +2,7 @@
 // The surfaces that a node of a network lies on: walls of the box, sides of bodies.
 // Along each axis that a flat one holds, the node moves as that surface does; on a
 // round one it may move along it; where nothing holds it, freely.
-#ifndef CRAQUELURE_DEFORM_DOMAIN_SIDES_H
-#define CRAQUELURE_DEFORM_DOMAIN_SIDES_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -20,5 +19,3 @@ struct domain_sides {
 struct domain_sides find_domain_sides(const struct packing *before,
                                       const struct packing *after, unsigned walls,
                                       struct vector at);
-
-#endif

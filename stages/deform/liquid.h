@@ -3,8 +3,7 @@
 //
 // Per cluster: surplus = sum over its throats of (liquid - saturation times new
 // volume). It is what must find other throats, or is missing.
-#ifndef CRAQUELURE_DEFORM_LIQUID_H
-#define CRAQUELURE_DEFORM_LIQUID_H
+#pragma once
 
 #include "network/network.h"
 
@@ -24,5 +23,3 @@ struct held_liquid {
 // the sum of the liquid is kept to rounding.
 double redistribute_liquid(const struct network *network,
                            const struct held_liquid *held, double *saturation);
-
-#endif

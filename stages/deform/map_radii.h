@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mapping of liquid and radii from a network to another of the same grains, moved.
-#ifndef CRAQUELURE_MAP_RADII_H
-#define CRAQUELURE_MAP_RADII_H
+#pragma once
 
 #include "basics/status.h"
 #include "neighbour_grains.h"
@@ -33,5 +32,3 @@ enum status map_radii(const struct network *before,
                       const struct neighbour_grains *around,
                       const struct packing *moved, enum clearance how,
                       struct network *renewed, struct reason *reason);
-
-#endif

@@ -3,8 +3,7 @@
 //
 // AFTER is always a copy of BEFORE whose grains have their new places; what has not
 // moved keeps its bytes.
-#ifndef CRAQUELURE_MOVE_H
-#define CRAQUELURE_MOVE_H
+#pragma once
 
 #include "neighbour_grains.h"
 
@@ -31,5 +30,3 @@ int move_nodes(const struct network *before, const struct neighbour_grains *arou
 int count_changed_nodes(const struct network *before,
                         const struct neighbour_grains *around,
                         const struct network *after);
-
-#endif

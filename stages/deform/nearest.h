@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The nearest of many points, in a box that may be periodic: there distances are those
 // to the nearest image.
-#ifndef CRAQUELURE_NEAREST_H
-#define CRAQUELURE_NEAREST_H
+#pragma once
 
 #include "geometry/linked_cells.h"
 #include "geometry/packing.h"
@@ -23,5 +22,3 @@ void places_free(struct places *places);
 // O(1) for evenly spread places; right for any others. Safe for several threads. By
 // rings of cells, until the next ring is farther than the best so far.
 int nearest_place(const struct places *places, struct vector from);
-
-#endif

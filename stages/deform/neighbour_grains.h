@@ -2,8 +2,7 @@
 // The grains around each node of a network, from the faces that meet there: four in a
 // diagram in general position, more on lattices and where nodes were merged, fewer on
 // walls. A node without a face has none.
-#ifndef CRAQUELURE_NEIGHBOUR_GRAINS_H
-#define CRAQUELURE_NEIGHBOUR_GRAINS_H
+#pragma once
 
 #include "network/network.h"
 
@@ -32,5 +31,3 @@ struct vector to_grain(const struct packing *packing, struct grain_beside beside
 
 // Whether both are the same grain in the same image: not two images of one.
 bool same_grain(struct grain_beside a, struct grain_beside b);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rotation that fits pairs of directions best, by least squares.
-#ifndef CRAQUELURE_DEFORM_ROTATION_H
-#define CRAQUELURE_DEFORM_ROTATION_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -26,5 +25,3 @@ struct rotation find_rotation(const struct products *sum);
 
 // X turned by TURN about the origin; as long as before.
 struct vector rotated(const struct rotation *turn, struct vector x);
-
-#endif

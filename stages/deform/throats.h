@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Throats of a network whose grains and nodes have moved.
-#ifndef CRAQUELURE_DEFORM_THROATS_H
-#define CRAQUELURE_DEFORM_THROATS_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/clearance.h"
@@ -43,5 +42,3 @@ enum status move_shapes(const struct network *before, bool changed,
 
 // Throats of kind THROAT_NETWORK that have a radius or volume of 0 in AFTER only.
 int count_closed_throats(const struct network *before, const struct network *after);
-
-#endif

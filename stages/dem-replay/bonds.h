@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which grains are bonded, and the strength of each bond.
-#ifndef CRAQUELURE_BONDS_H
-#define CRAQUELURE_BONDS_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -44,5 +43,3 @@ double *bond_strengths(const struct strength_scatter *scatter,
 
 // N times 1, which the caller frees.
 double *equal_strengths(int n);
-
-#endif

@@ -7,8 +7,7 @@
 // ROUNDS rounds by evaporation: gas enters, the suction moves to what the narrowest of
 // the throats needs, grains follow for ROUND time steps. Between two entries forces
 // follow the grains, connections do not.
-#ifndef CRAQUELURE_DEM_REPLAY_CAPILLARITY_H
-#define CRAQUELURE_DEM_REPLAY_CAPILLARITY_H
+#pragma once
 
 #include "dem/dem.h"
 #include "network/pore_liquid.h"
@@ -97,5 +96,3 @@ double note_drainage(const struct drainage *drainage, const struct dem *dem, int
 
 // The lateral tension of the liquid now, Pa over the volume of the box.
 double liquid_tension(const struct drainage *drainage, const struct dem *dem);
-
-#endif

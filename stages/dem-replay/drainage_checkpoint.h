@@ -5,8 +5,7 @@
 // Both take the same arrays in the same order, with the names that stand at the top of
 // drainage_checkpoint.c. What follows from the packing (pores, their first volumes) is
 // not among them: restore needs a drainage that drainage_begin has made.
-#ifndef CRAQUELURE_DRAINAGE_CHECKPOINT_H
-#define CRAQUELURE_DRAINAGE_CHECKPOINT_H
+#pragma once
 
 #include "replay.h"
 
@@ -20,5 +19,3 @@ void save_drainage(struct array_list *list, const struct drainage *drainage,
 enum status restore_drainage(const struct array_list *list, struct drainage *drainage,
                              struct drainage_history *history, const struct load *load,
                              int n_particle, struct reason *reason);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which grains are held fixed: they neither move nor rotate.
-#ifndef CRAQUELURE_FIXED_GRAINS_H
-#define CRAQUELURE_FIXED_GRAINS_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/packing.h"
@@ -24,5 +23,3 @@ struct fixed_grains {
 enum status find_fixed_grains(const struct packing *packing,
                               const struct fixed_grains *held, uint8_t **is_held,
                               struct reason *reason);
-
-#endif

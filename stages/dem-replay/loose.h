@@ -5,8 +5,7 @@
 // loose_grains=unload removes the net load (inertia relief) and stops the fragment. A
 // single grain then carries no load; a larger fragment keeps the part of its load that
 // is in equilibrium, and may crack further.
-#ifndef CRAQUELURE_LOOSE_H
-#define CRAQUELURE_LOOSE_H
+#pragma once
 
 #include "dem/dem.h"
 #include "geometry/fragments.h"
@@ -34,5 +33,3 @@ void find_loose(struct loose_grains *loose, const struct packing *packing,
 struct net_load relieve_loose(const struct loose_grains *loose,
                               const struct packing *packing,
                               const struct vector *displacement, struct vector *force);
-
-#endif

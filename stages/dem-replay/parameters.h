@@ -2,8 +2,7 @@
 // The parameters of dem-replay: the table, and what of them must be known together. The
 // functions below are called in their order: the first needs no file, the second the
 // forces, the third the bonds.
-#ifndef CRAQUELURE_REPLAY_PARAMETERS_H
-#define CRAQUELURE_REPLAY_PARAMETERS_H
+#pragma once
 
 #include "artifacts/liquid.h"
 #include "bonds.h"
@@ -51,5 +50,3 @@ const char *complete_bridges(struct replay_parameters *parameters,
 // asked of it.
 void choose_engine(const struct replay_parameters *parameters,
                    const struct packing *packing, struct replay_settings *settings);
-
-#endif

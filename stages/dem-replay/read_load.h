@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The load of a replay, from the forces in an artifact, row by row, or for a packing
 // that shrinks or drains without any.
-#ifndef CRAQUELURE_DEM_REPLAY_READ_LOAD_H
-#define CRAQUELURE_DEM_REPLAY_READ_LOAD_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "parameters.h"
@@ -24,5 +23,3 @@ void add_weight(struct load *load, double *weight);
 // The largest force (N) on a grain, without weight, in all rows that a replay of LOAD
 // has asked for so far.
 double largest_force(const struct load *load);
-
-#endif

@@ -4,8 +4,7 @@
 // In short: for each row of the load the engine brings the body to rest under it, and
 // what has happened is noted in a response. main.c makes load and settings from
 // artifacts and parameters; replay itself reads no file and prints nothing.
-#ifndef CRAQUELURE_REPLAY_H
-#define CRAQUELURE_REPLAY_H
+#pragma once
 
 #include "basics/status.h"
 #include "capillarity.h"
@@ -184,5 +183,3 @@ static inline double ratio_at_rest(const struct replay_settings *settings)
 
 // Frees what the response owns and empties it.
 void response_free(struct response *response);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the files of the replay as cycles share: the discrete elements and what is known
 // of the body beside them.
-#ifndef CRAQUELURE_REPLAY_BY_CYCLES_H
-#define CRAQUELURE_REPLAY_BY_CYCLES_H
+#pragma once
 
 #include "dem/dem.h"
 #include "loose.h"
@@ -62,5 +61,3 @@ void shrink(struct run *run);
 
 // Applies the forces of the step to the grains where they are now.
 void apply_forces(struct run *run);
-
-#endif

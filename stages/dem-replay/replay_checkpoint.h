@@ -7,8 +7,7 @@
 // goes into the response, as all loads up to there. Lists that are made own copies;
 // whoever gets one frees it with free_arrays. Lists that are read keep what they have:
 // pointers into them live as long as they do.
-#ifndef CRAQUELURE_REPLAY_CHECKPOINT_H
-#define CRAQUELURE_REPLAY_CHECKPOINT_H
+#pragma once
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
@@ -90,5 +89,3 @@ enum status restore_response(struct response *response, const struct packing *pa
                              const struct engine_past *past,
                              const struct array_list *list, struct replay_place *place,
                              struct reason *reason);
-
-#endif

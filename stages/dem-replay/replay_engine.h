@@ -2,8 +2,7 @@
 // The interface of an engine to the replay; the two engines are replay_by_*.c. The
 // replay knows steps, records and snapshots; an engine knows how a body comes to rest
 // under the forces of one step. So both have the same results in the same places.
-#ifndef CRAQUELURE_REPLAY_ENGINE_H
-#define CRAQUELURE_REPLAY_ENGINE_H
+#pragma once
 
 #include "replay.h"
 #include "replay_checkpoint.h"
@@ -78,5 +77,3 @@ void take_forces(struct run *run);
 // The dryness of the grains (n_particle) at ROW of the load; NULL: not known, or before
 // the load (ROW -1). That of the row before stays valid.
 const double *dryness_at(const struct run *run, int row);
-
-#endif

@@ -7,8 +7,7 @@
 //     uniform   w = t
 //     front     w = ((1 + b) t - (z_top - z) / h) / b, cut off at 0 and 1
 //     liquid    w = 1 - m / m_most
-#ifndef CRAQUELURE_DEM_REPLAY_SHRINKAGE_H
-#define CRAQUELURE_DEM_REPLAY_SHRINKAGE_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -36,5 +35,3 @@ void liquid_to_dryness(const double *liquid, const double *most, double saturati
 // SHRINKAGE_LIQUID goes by. Row -1 is before the load: nothing.
 void find_shrinkage(const struct shrinkage *how, const struct packing *packing, int row,
                     double saturation, const double *dryness, double *strain);
-
-#endif

@@ -2,8 +2,7 @@
 // The reaction of the supports: fixed grains, and the wall beneath. Both engines give
 // it in the same terms: all that the supports do to the grains, of which each fixed
 // grain's own load is a part. O(n_particle).
-#ifndef CRAQUELURE_SUPPORT_REACTION_H
-#define CRAQUELURE_SUPPORT_REACTION_H
+#pragma once
 
 #include "geometry/net_load.h"
 #include "quasi_static/quasi_static.h"
@@ -21,5 +20,3 @@ struct net_load reaction_of_equilibrium(const struct packing *packing,
                                         const struct quasi_static *equilibrium,
                                         const uint8_t *held,
                                         const struct vector *force);
-
-#endif

@@ -2,8 +2,7 @@
 // The weight as the user asks for it, and warnings about it and about other scales. The
 // sum itself is in weight.h; here is what belongs to the stage: parameters, messages,
 // the artifact.
-#ifndef CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
-#define CRAQUELURE_DEM_REPLAY_TAKE_WEIGHT_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "parameters.h"
@@ -55,5 +54,3 @@ const char *describe_weight(const struct taken_weight *weight, char text[200]);
 // drying, to a response artifact.
 void put_weight(struct artifact *artifact, const struct taken_weight *weight,
                 const struct response *response);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The weight of the body: a load under which it is at rest before drying begins, and
 // which stays on it while it dries.
-#ifndef CRAQUELURE_DEM_REPLAY_WEIGHT_H
-#define CRAQUELURE_DEM_REPLAY_WEIGHT_H
+#pragma once
 
 #include "geometry/bond_numbers.h"
 #include "replay.h"
@@ -29,5 +28,3 @@ struct vector *standing_weight(const struct weighing *of);
 // SUCTION.
 struct bond_numbers find_bond_numbers(double largest, double suction,
                                       const struct weighing *of);
-
-#endif

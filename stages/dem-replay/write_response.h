@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A response as an artifact. The datasets and their shapes stand at the top of
 // write_response.c, their rules in schemas/response.json.
-#ifndef CRAQUELURE_WRITE_RESPONSE_H
-#define CRAQUELURE_WRITE_RESPONSE_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "replay.h"
@@ -19,5 +18,3 @@ void put_response(struct artifact *artifact, const struct packing *packing,
 // Puts the N bonds CRACK and how they broke as the datasets bond and mode of GROUP.
 void put_bonds_and_modes(struct artifact *artifact, const char *group,
                          const struct dem_crack *crack, int n);
-
-#endif

@@ -3,8 +3,7 @@
 //
 // What is 0 or NULL is off: gravity, knudsen, kelvin, rings, snapshots, start. Numbers
 // that are not given do not exist here: dry/parameters.h has filled them in.
-#ifndef CRAQUELURE_CONDITIONS_H
-#define CRAQUELURE_CONDITIONS_H
+#pragma once
 
 #include "basics/status.h"
 #include "dry/gas/boundary_layer.h"
@@ -125,5 +124,3 @@ struct drying_scale drying_scale(const struct network *network,
 // D_K = (2/3) r sqrt(8 R T / (pi M)) equals the molecular one. 0 without the Knudsen
 // effect.
 double knudsen_radius(const struct drying_conditions *conditions);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The model of liquid and menisci in words: lines of the artifact's `model`. They say
 // what a reader cannot see in the numbers, and what the model leaves out.
-#ifndef CRAQUELURE_DRY_DESCRIBE_H
-#define CRAQUELURE_DRY_DESCRIBE_H
+#pragma once
 
 #include "dry/run/drying.h"
 
@@ -18,5 +17,3 @@ const char *describe_liquid(const struct drying_conditions *conditions,
 // "\n" but the last.
 const char *describe_switches(const struct drying_conditions *conditions, char *text,
                               size_t size);
-
-#endif

@@ -5,8 +5,7 @@
 //
 // Order of use: stage_begin with dry_table; complete_conditions once the network is
 // read; give_radii and shutting of throats before anything is made from radii (main.c).
-#ifndef CRAQUELURE_DRY_PARAMETERS_H
-#define CRAQUELURE_DRY_PARAMETERS_H
+#pragma once
 
 #include "dry/gas/mass_transfer.h"
 #include "dry/run/drying.h"
@@ -47,5 +46,3 @@ enum status complete_conditions(struct dry_parameters *parameters,
 
 // films.step, or its default in a network of so many THROATS.
 double film_step(const struct dry_parameters *parameters, double throats);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes the drying artifact (schemas/drying.json).
-#ifndef CRAQUELURE_WRITE_DRYING_H
-#define CRAQUELURE_WRITE_DRYING_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "parameters.h"
@@ -16,5 +15,3 @@ void write_drying(const struct network *network, const struct drying_history *hi
                   const struct invocation *invocation, const struct artifact *input,
                   const struct dry_parameters *parameters,
                   const struct mass_transfer *transfer);
-
-#endif

@@ -4,8 +4,7 @@
 //     /boundary_layer  node, wall, area m2 (n_column);
 //                      links (n_link, 2), length m, width m, edge (n_link)
 //     /summary         boundary_layer_thickness m, boundary_layers
-#ifndef CRAQUELURE_WRITE_LAYER_H
-#define CRAQUELURE_WRITE_LAYER_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "dry/gas/mass_transfer.h"
@@ -24,5 +23,3 @@ const char *describe_layer(const struct drying_conditions *conditions,
                            const struct drying_history *history, char text[300]);
 const char *describe_flow(enum transfer_law law, const struct mass_transfer *transfer,
                           char text[200]);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What became of rings, in the drying artifact.
-#ifndef CRAQUELURE_WRITE_RINGS_H
-#define CRAQUELURE_WRITE_RINGS_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "dry/run/drying.h"
@@ -10,5 +9,3 @@
 // and, with films, what they did; volumes in m3. ARTIFACT is a drying; the caller
 // finishes it.
 void put_rings(struct artifact *artifact, const struct drying_history *history);
-
-#endif

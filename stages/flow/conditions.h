@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The boundary conditions of the flow, as the user gives them, and in the units of the
 // computation: pressures stay in Pa, fluxes become unit^3 Pa for a viscosity of 1.
-#ifndef CRAQUELURE_FLOW_CONDITIONS_H
-#define CRAQUELURE_FLOW_CONDITIONS_H
+#pragma once
 
 #include "pressures.h"
 
@@ -25,5 +24,3 @@ enum status find_conditions(const struct grains *grains, const struct imposed *i
 // Only a pressure that falls by DROP (Pa) along AXIS: between its walls, or as a mean
 // gradient in a periodic box.
 struct conditions fall_along(const struct grains *grains, int axis, double drop);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The geometry of one throat [C 2.2.2]: a facet of the triangulation and the centres
 // of the two pores that it separates. In any unit of length.
-#ifndef CRAQUELURE_FLOW_FACET_H
-#define CRAQUELURE_FLOW_FACET_H
+#pragma once
 
 #include "geometry/vector.h"
 #include "network/open_section.h"
@@ -66,5 +65,3 @@ struct throat_shape facet_section_shape(const struct corner corner[3],
 // Radius of the circle in the plane of the facet that touches all three corners [C 10];
 // 0 when there is none, for grains overlap.
 double inscribed_radius(const struct corner corner[3]);
-
-#endif

@@ -2,8 +2,7 @@
 // The forces of the fluid on grains and walls [C 2.3]: its pressure on the sectors of
 // the facets [C 14], and the drag of what flows between them [C 18]. Moments are not
 // found.
-#ifndef CRAQUELURE_FLOW_FORCES_H
-#define CRAQUELURE_FLOW_FORCES_H
+#pragma once
 
 #include "pressures.h"
 
@@ -25,5 +24,3 @@ struct forces find_forces(const struct grains *grains, const struct cells *cells
                           const struct throats *throats,
                           const struct pressures *pressures);
 void forces_free(struct forces *forces);
-
-#endif

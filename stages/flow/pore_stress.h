@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The viscous stress of the fluid, averaged over each pore.
-#ifndef CRAQUELURE_FLOW_PORE_STRESS_H
-#define CRAQUELURE_FLOW_PORE_STRESS_H
+#pragma once
 
 #include "pressures.h"
 
@@ -23,5 +22,3 @@ struct pore_stress find_pore_stress(const struct grains *grains,
                                     const struct conditions *conditions,
                                     const struct pressures *pressures);
 void pore_stress_free(struct pore_stress *stress);
-
-#endif

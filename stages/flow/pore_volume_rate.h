@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How fast moving grains and walls open and close the pores [C 5, 20].
-#ifndef CRAQUELURE_FLOW_PORE_VOLUME_RATE_H
-#define CRAQUELURE_FLOW_PORE_VOLUME_RATE_H
+#pragma once
 
 #include "throats.h"
 
@@ -14,5 +13,3 @@
 double *opening_rates(const struct grains *grains, const struct cells *cells,
                       const struct throats *throats, const struct vector *velocity,
                       struct vector rate);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pressure in every pore, from the balances of the flow [C 6, 20]. The flow is slow
 // and viscous, so pressures are linear in what is imposed, and nothing has a history.
-#ifndef CRAQUELURE_FLOW_PRESSURES_H
-#define CRAQUELURE_FLOW_PRESSURES_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "basics/status.h"
@@ -73,5 +72,3 @@ double mean_pressure(const struct pressures *pressures, const struct grains *gra
 // p_i, Pa. With the mean gradient at the centre of CELL.
 double pore_pressure(const struct pressures *pressures, const struct cells *cells,
                      int cell);
-
-#endif

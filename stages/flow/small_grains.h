@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The drag on small grains in a large pore.
-#ifndef CRAQUELURE_FLOW_SMALL_GRAINS_H
-#define CRAQUELURE_FLOW_SMALL_GRAINS_H
+#pragma once
 
 #include "forces.h"
 
@@ -15,5 +14,3 @@
 void add_stokes_drag(const struct grains *grains, const struct cells *cells,
                      const struct throats *throats, const struct pressures *pressures,
                      struct forces *forces);
-
-#endif

@@ -2,8 +2,7 @@
 // The throats between pores: their geometry and what they conduct [C 2.2.2]. A throat
 // is a facet between two cells, with the double pyramid from it to their two centres.
 // Everything is in units (cell_grains.h), conductances in unit^3 for a viscosity of 1.
-#ifndef CRAQUELURE_FLOW_THROATS_H
-#define CRAQUELURE_FLOW_THROATS_H
+#pragma once
 
 #include "network/pore_cells.h"
 
@@ -73,5 +72,3 @@ struct corner facet_corner_of(const struct grains *grains, const struct pore_cel
 // From the centre of the first cell to that of the second.
 struct vector throat_step(const struct grains *grains, const struct cells *cells,
                           const struct throat *throat);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The flow as an artifact, or as the forces of one. Both begin with the packing.
-#ifndef CRAQUELURE_WRITE_FLOW_H
-#define CRAQUELURE_WRITE_FLOW_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "forces.h"
@@ -35,5 +34,3 @@ void put_flow(struct artifact *artifact, const struct flow *flow);
 // apart, to an artifact of schema forces. The saturation is 1 throughout: dem-replay
 // takes these forces as it takes those of a drying. STEPS is at least 2.
 void put_forces(struct artifact *artifact, const struct flow *flow, int steps);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pulls of throats that leave the grains around each throat in balance.
-#ifndef CRAQUELURE_BALANCE_H
-#define CRAQUELURE_BALANCE_H
+#pragma once
 
 #include "solid_angle_patches.h"
 
@@ -23,5 +22,3 @@
 enum status find_balanced_patches(struct sectors *sectors, enum form form, bool last,
                                   struct patches *patches, double *change,
                                   struct reason *reason);
-
-#endif

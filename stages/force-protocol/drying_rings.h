@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pull of the rings that a drying has left at contacts, while they dry.
-#ifndef CRAQUELURE_DRYING_RINGS_H
-#define CRAQUELURE_DRYING_RINGS_H
+#pragma once
 
 #include "basics/status.h"
 #include "bridges/ratios.h"
@@ -39,5 +38,3 @@ void drying_rings_pull(const struct drying_rings *rings,
 // The sum of PULL on GRAIN.
 struct vector drying_rings_force(const struct drying_rings *rings, const double *pull,
                                  int grain);
-
-#endif

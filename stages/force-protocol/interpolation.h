@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far the forces on the grains are from those interpolated between the times of the
 // protocol, followed while its rows are made.
-#ifndef CRAQUELURE_INTERPOLATION_H
-#define CRAQUELURE_INTERPOLATION_H
+#pragma once
 
 #include "process.h"
 
@@ -30,5 +29,3 @@ void interpolation_free(struct interpolation *interpolation);
 // steps between both times.
 void interpolation_follow(struct interpolation *of, const struct vector *former,
                           const struct vector *force, int row);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The load of the liquid in each throat during the drying: how much liquid there is,
 // under which suction, with how many menisci.
-#ifndef CRAQUELURE_LIQUID_LOADS_H
-#define CRAQUELURE_LIQUID_LOADS_H
+#pragma once
 
 #include "network/ring_record.h"
 
@@ -101,5 +100,3 @@ double field_error(const struct liquid_loads *liquid);
 // Sets CLUSTER (n_throat) to the lowest throat of each throat's cluster, -1: no liquid.
 // Throats join at nodes where none has emptied. Returns the number of clusters.
 int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The weight of the liquid, on the grains around it.
-#ifndef CRAQUELURE_LIQUID_WEIGHT_H
-#define CRAQUELURE_LIQUID_WEIGHT_H
+#pragma once
 
 #include "liquid_loads.h"
 #include "solid_angle_patches.h"
@@ -21,5 +20,3 @@ double liquid_density(const struct network *network, const struct liquid_record 
 // SHARES. With GRAVITY > 0, that of the law.
 void liquid_masses(const struct liquid_loads *liquid, const struct patches *shares,
                    double gravity, double *mass);
-
-#endif

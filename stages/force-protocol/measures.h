@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is said of the forces of a protocol, found time by time.
-#ifndef CRAQUELURE_MEASURES_H
-#define CRAQUELURE_MEASURES_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -22,5 +21,3 @@ void measure_forces(struct measures *measures, const struct packing *packing,
 // is not defined: 0.
 double net_force(const struct measures *measures);
 double net_moment(const struct measures *measures, const struct packing *packing);
-
-#endif

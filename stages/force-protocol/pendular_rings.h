@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pendular rings: the liquid that stays at contacts when throats empty.
-#ifndef CRAQUELURE_PENDULAR_RINGS_H
-#define CRAQUELURE_PENDULAR_RINGS_H
+#pragma once
 
 #include "solid_angle_patches.h"
 
@@ -43,5 +42,3 @@ enum status find_pendular_rings(struct sectors *sectors, const struct ring_law *
 enum status solve_ring(const double radius[2], double separation,
                        const struct ring_law *law, double *volume, double *force,
                        struct reason *reason);
-
-#endif

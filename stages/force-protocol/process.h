@@ -4,8 +4,7 @@
 // Bundled because everything that makes forces needs all four: protocol.h (row by row),
 // times.h (which rows), interpolation.h (how good they are). All must live as long as
 // what is made from them.
-#ifndef CRAQUELURE_PROCESS_H
-#define CRAQUELURE_PROCESS_H
+#pragma once
 
 #include "throat_loads.h"
 
@@ -16,5 +15,3 @@ struct process {
     const struct suction_law *law;
     const struct throat_loads *loads;
 };
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Capillary forces on the grains over time, from the liquid in each throat [K 3.6,
 // 5.2, 5.3]: one time after the other, so that those of all times need no memory.
-#ifndef CRAQUELURE_PROTOCOL_H
-#define CRAQUELURE_PROTOCOL_H
+#pragma once
 
 #include "interpolation.h"
 #include "measures.h"
@@ -28,5 +27,3 @@ void protocol_free(struct protocol *protocol);
 
 // Goes to the next time; false: there is none. OpenMP.
 bool protocol_next(struct protocol *protocol);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reads what the forces need from a drying artifact.
-#ifndef CRAQUELURE_READ_RECORD_H
-#define CRAQUELURE_READ_RECORD_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "liquid_loads.h"
@@ -13,5 +12,3 @@
 struct liquid_record read_record(const struct artifact *input,
                                  const struct network *network, bool field, bool rings);
 void free_record(struct liquid_record *record);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pull of each throat on each grain beside it, for a unit of its load [K
 // 3.13-3.21, 5.1].
-#ifndef CRAQUELURE_SOLID_ANGLE_PATCHES_H
-#define CRAQUELURE_SOLID_ANGLE_PATCHES_H
+#pragma once
 
 #include "basics/status.h"
 #include "throat_face_sectors.h"
@@ -67,5 +66,3 @@ enum status check_patches(const struct patches *patches, struct reason *reason);
 // of those that only face it where cells were left out.
 void drop_patches_in_walls(const struct sectors *sectors, unsigned walls,
                            struct patches *patches);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where each throat lies beside each grain: the sectors from which all forms of the
 // capillary force are made.
-#ifndef CRAQUELURE_THROAT_FACE_SECTORS_H
-#define CRAQUELURE_THROAT_FACE_SECTORS_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -51,5 +50,3 @@ void sectors_free_sides(struct sectors *sectors);
 
 // The wedges of THROAT in wedges->wedge, until asked again; returns how many.
 int sectors_at(struct sectors *sectors, int throat);
-
-#endif

@@ -3,8 +3,7 @@
 // step to step of the drying. A patch says how a throat pulls a grain for a load of 1,
 // by geometry alone; liquid_loads.h says how large the load is. Both ways add in the
 // same order, so they give the same bits, for any number of threads.
-#ifndef CRAQUELURE_THROAT_LOADS_H
-#define CRAQUELURE_THROAT_LOADS_H
+#pragma once
 
 #include "drying_rings.h"
 #include "liquid_loads.h"
@@ -60,5 +59,3 @@ void force_steps_free(struct force_steps *steps);
 // that changed when the step began, not at those that change until the next.
 void force_steps_to_end_of_step(struct force_steps *steps);
 bool force_steps_advance(struct force_steps *steps);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The times of the protocol, from the start to the end of drying.
-#ifndef CRAQUELURE_TIMES_H
-#define CRAQUELURE_TIMES_H
+#pragma once
 
 #include "process.h"
 
@@ -16,5 +15,3 @@ double *uniform_times(const struct drying_record *record, int count);
 // times.
 double *adaptive_times(const struct process *process, double bound, int most,
                        double *count);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Any artifact as JSON.
-#ifndef CRAQUELURE_DESCRIBE_H
-#define CRAQUELURE_DESCRIBE_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -13,5 +12,3 @@ json_t *describe_artifact(const struct artifact *artifact);
 // One dataset as nested lists, as deep as its rank; NAME with or without its first
 // slash. Exits 65 when the artifact has none of that NAME. The caller owns it.
 json_t *dataset_json(const struct artifact *artifact, const char *name);
-
-#endif

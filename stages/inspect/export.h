@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_EXPORT_H
-#define CRAQUELURE_EXPORT_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -10,5 +9,3 @@
 // faces go into the JSON graph only. Each file is written whole or not at all.
 void export_network(const struct artifact *artifact, const char *openpnm,
                     const char *statoil);
-
-#endif

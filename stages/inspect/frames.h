@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A series of grids at rising times: one file a frame, and a list of all for ParaView.
-#ifndef CRAQUELURE_FRAMES_H
-#define CRAQUELURE_FRAMES_H
+#pragma once
 
 #include "vtu.h"
 
@@ -17,5 +16,3 @@ void add_frame(struct frames *frames, double time, const struct vtu_grid *grid);
 
 // Writes PREFIX.pvd, last: whoever finds it finds all its frames.
 void end_frames(struct frames *frames);
-
-#endif

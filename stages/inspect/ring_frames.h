@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rings of liquid around contacts, as frames beside those of the throats.
-#ifndef CRAQUELURE_RING_FRAMES_H
-#define CRAQUELURE_RING_FRAMES_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "frames.h"
@@ -30,5 +29,3 @@ void ring_frames_step(struct ring_frames *rings, int step);
 
 // A frame at TIME (s), with the SATURATION (n_throat) of throats then.
 void ring_frames_add(struct ring_frames *rings, double time, const double *saturation);
-
-#endif

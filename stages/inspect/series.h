@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_SERIES_H
-#define CRAQUELURE_SERIES_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -10,5 +9,3 @@
 // response or motion has one frame a snapshot, whatever N_FRAME. Exits 65 for an
 // artifact in which nothing changes.
 void write_series(const struct artifact *artifact, const char *prefix, int n_frame);
-
-#endif

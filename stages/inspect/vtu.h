@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK's XML unstructured grids, as text: what ParaView, VisIt and meshio read.
-#ifndef CRAQUELURE_VTU_H
-#define CRAQUELURE_VTU_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -38,5 +37,3 @@ struct vtu_frame {
 // Writes PATH, the list of N_FRAME frames that ParaView opens, whole or not at all.
 // Frames must lie in its folder: only their last names are written.
 void write_pvd(const char *path, const struct vtu_frame *frames, int n_frame);
-
-#endif

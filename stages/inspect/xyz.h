@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains as extended XYZ, which OVITO and ASE read.
-#ifndef CRAQUELURE_XYZ_H
-#define CRAQUELURE_XYZ_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -10,5 +9,3 @@
 // place, radius, and what is known of force, displacement and broken bonds; in SI
 // units. Exits 73 and 74.
 void write_xyz(const struct artifact *artifact, const char *path, int n_frame);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The pressure at which gas enters throats and nodes.
-#ifndef CRAQUELURE_ENTRY_H
-#define CRAQUELURE_ENTRY_H
+#pragma once
 
 #include "network/invasion.h"
 
@@ -32,5 +31,3 @@ enum status entry_init(const struct network *network, enum invasion_rule rule,
                        struct reason *reason);
 
 void entry_free(struct entry *entry);
-
-#endif

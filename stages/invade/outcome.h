@@ -2,8 +2,7 @@
 // The results of an invasion: throats, nodes, and the liquid that stays. The invasion
 // (network/invasion.h) only says what gas enters in which order; volumes and pressures
 // come in here.
-#ifndef CRAQUELURE_OUTCOME_H
-#define CRAQUELURE_OUTCOME_H
+#pragma once
 
 #include "network/invasion.h"
 
@@ -55,5 +54,3 @@ int events_of_pieces(const struct network *network, const struct outcome *outcom
 void outcome_add_rings(struct outcome *outcome, const double *volume);
 
 void outcome_free(struct outcome *outcome);
-
-#endif

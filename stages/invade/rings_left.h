@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The liquid that stays as rings around contacts where gas has come.
-#ifndef CRAQUELURE_RINGS_LEFT_H
-#define CRAQUELURE_RINGS_LEFT_H
+#pragma once
 
 #include "network/contact_rings.h"
 #include "outcome.h"
@@ -25,5 +24,3 @@ enum status rings_left_init(const struct network *network,
                             const struct ring_liquid *liquid, double weight,
                             struct rings_left *left, struct reason *reason);
 void rings_left_free(struct rings_left *left);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How well gas and liquid flow and diffuse from inlet to outlet while gas replaces
 // liquid: relative permeabilities and diffusivities.
-#ifndef CRAQUELURE_TRANSPORT_H
-#define CRAQUELURE_TRANSPORT_H
+#pragma once
 
 #include "outcome.h"
 
@@ -39,5 +38,3 @@ enum status transport_find(const struct network *network,
                            struct reason *reason);
 
 void transport_free(struct transport *transport);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Removes short throats by merging their two nodes [K 3.3.7].
-#ifndef CRAQUELURE_MERGE_H
-#define CRAQUELURE_MERGE_H
+#pragma once
 
 #include "network/network.h"
 
@@ -42,5 +41,3 @@ struct merge_report {
 // O(n log n). NETWORK is changed in place. REPORT is overwritten.
 void merge_nodes(struct network *network, enum merge_measure measure, double threshold,
                  struct merge_report *report);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state behind merge_nodes: which nodes are one, which throats they have, and
 // which throat is the shortest.
-#ifndef CRAQUELURE_MERGE_STATE_H
-#define CRAQUELURE_MERGE_STATE_H
+#pragma once
 
 #include "network/network.h"
 
@@ -74,5 +73,3 @@ void merging_move_throats(struct merging *merging, int root, int other, bool mov
 
 // Writes the merged network back, renumbered in the old order, and frees MERGING.
 void merging_finish(struct merging *merging);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How merging changed the distributions of coordination, length and radius, as JSON [K
 // Figs. 3.24, 3.25].
-#ifndef CRAQUELURE_MERGE_NODES_REPORT_H
-#define CRAQUELURE_MERGE_NODES_REPORT_H
+#pragma once
 
 #include "merge.h"
 
@@ -30,5 +29,3 @@ void census_free(struct census *census);
 // it.
 json_t *merging_json(const struct merge_report *report, const struct census *before,
                      const struct census *after);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where grains may lie: a box, cylinder, ring or sphere, perhaps with something cut
 // out.
-#ifndef CRAQUELURE_PACK_DOMAIN_H
-#define CRAQUELURE_PACK_DOMAIN_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/packing.h"
@@ -108,5 +107,3 @@ struct vector nearest_apart(const struct domain *domain, struct vector from,
 // domain (in two dimensions: area).
 enum status domain_check_filling(const struct domain *domain, const double *radius,
                                  int n, struct reason *reason);
-
-#endif

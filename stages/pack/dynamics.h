@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Packings by moving grains [K 3.1.1]: what the methods share.
-#ifndef CRAQUELURE_PACK_DYNAMICS_H
-#define CRAQUELURE_PACK_DYNAMICS_H
+#pragma once
 
 #include "basics/progress.h"
 #include "checkpoint/keeper.h"
@@ -170,5 +169,3 @@ double backbone_coordination(const struct making *making, const struct dem *dem)
 // Fills making->reached from DEM. Adds its cycles and its time to those of earlier
 // engines.
 void note_end(const struct making *making, const struct dem *dem);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Look-up of placed grains by position: one grid of cells for each halving of the
 // radius, so that a query costs the same at any ratio of radii.
-#ifndef CRAQUELURE_PACK_GRIDS_H
-#define CRAQUELURE_PACK_GRIDS_H
+#pragma once
 
 #include "domain.h"
 
@@ -29,5 +28,3 @@ double grids_radius(const struct grids *grids, int grain);
 // the ratio of radii, but on how many grains are near.
 int grids_near(const struct grids *grids, struct vector centre, double radius,
                double gap, int *found, int most);
-
-#endif

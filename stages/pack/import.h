@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains from files of other programs.
-#ifndef CRAQUELURE_PACK_IMPORT_H
-#define CRAQUELURE_PACK_IMPORT_H
+#pragma once
 
 #include "domain.h"
 #include "parameters.h"
@@ -15,5 +14,3 @@
 struct packing make_import(const struct invocation *invocation,
                            const struct pack_parameters *parameters, json_t *inputs,
                            struct domain *domain);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the user's parameters to grains: which method, in which domain, how many.
-#ifndef CRAQUELURE_PACK_METHODS_H
-#define CRAQUELURE_PACK_METHODS_H
+#pragma once
 
 #include "basics/progress.h"
 #include "domain.h"
@@ -33,5 +32,3 @@ enum status expected_count(const struct pack_parameters *parameters, double *gra
 enum status check_moved(const struct pack_parameters *parameters, const char *given,
                         const struct domain *domain, const struct sizes *sizes,
                         struct reason *reason);
-
-#endif

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_PACK_H
-#define CRAQUELURE_PACK_H
+#pragma once
 
 #include "basics/progress.h"
 #include "basics/status.h"
@@ -103,5 +102,3 @@ enum status check_layer(const struct domain *domain, int wall, struct reason *re
 // Porosity of the box; overlaps count twice as solid. Can be below 0 where grains
 // overlap much.
 double packing_porosity(const struct packing *packing);
-
-#endif

@@ -2,8 +2,7 @@
 // The parameters of pack. NAN, or 0 for counts: not given. What stands in for it
 // depends on the method (methods.c). The table checks each parameter for itself; that
 // they agree with each other is checked by the functions that use them.
-#ifndef CRAQUELURE_PACK_PARAMETERS_H
-#define CRAQUELURE_PACK_PARAMETERS_H
+#pragma once
 
 #include "domain.h"
 #include "dynamics.h"
@@ -63,5 +62,3 @@ struct pack_parameters {
 // Fills a struct pack_parameters but for .dynamics.threads and .dynamics.keeper, which
 // main sets.
 extern const struct parameter pack_table[];
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The report of a packing: the numbers and curves of /summary and /structure, in the
 // artifact and as JSON.
-#ifndef CRAQUELURE_PACK_REPORT_H
-#define CRAQUELURE_PACK_REPORT_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "domain.h"
@@ -51,5 +50,3 @@ void report_write(const struct packing_report *report, const char *path,
                   json_t *reached);
 
 void report_free(struct packing_report *report);
-
-#endif

@@ -2,8 +2,7 @@
 // Size distributions of grains, drawn one radius at a time. Prepared once, then drawn
 // from in O(1) or O(log pieces): continuous distributions are cut into pieces, each of
 // which is drawn from by inversion.
-#ifndef CRAQUELURE_PACK_SIZES_H
-#define CRAQUELURE_PACK_SIZES_H
+#pragma once
 
 #include "basics/status.h"
 #include "parameters/parameters.h"
@@ -73,5 +72,3 @@ double sizes_draw(const struct sizes *sizes, gsl_rng *random);
 
 // N radii, m, in the order drawn; the caller frees them.
 double *sizes_draw_many(const struct sizes *sizes, int n, gsl_rng *random);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arrays for a page: whole numbers as planes of bytes (all lowest bytes first), so that
 // they compress well and browsers of any byte order read them alike.
-#ifndef CRAQUELURE_REPORT_ARRAYS_H
-#define CRAQUELURE_REPORT_ARRAYS_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -36,5 +35,3 @@ char *arrays_text(const struct arrays *arrays);
 
 // The caller frees it. SIZE bytes of DATA as text with a terminating 0.
 char *base64(const unsigned char *data, size_t size);
-
-#endif

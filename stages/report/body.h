@@ -3,8 +3,7 @@
 // are named by what they belong to: grain.*, node.*, throat.*, bond.*, load.*,
 // moment.*; each by the number of grains, nodes and so on. Distances are in steps of
 // `grid`, times are keys (course.h).
-#ifndef CRAQUELURE_REPORT_BODY_H
-#define CRAQUELURE_REPORT_BODY_H
+#pragma once
 
 #include "course.h"
 
@@ -34,5 +33,3 @@ void shown_body_free(struct shown_body *body);
 // The whole number of steps along AXIS at which POINT is. AXIS 0 to 2; rounded to the
 // nearest.
 uint32_t on_grid(const struct grid *grid, struct vector point, int axis);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The course of a run: rows over time that the slider of the page moves through. What
 // happens has a key: the row at which it does, in fractions of a row.
-#ifndef CRAQUELURE_REPORT_COURSE_H
-#define CRAQUELURE_REPORT_COURSE_H
+#pragma once
 
 #include "arrays.h"
 #include "run.h"
@@ -37,5 +36,3 @@ double saturation_at(const struct course *course, double time);
 // known.
 void put_course(struct arrays *arrays, const struct course *course,
                 const struct run *run);
-
-#endif

@@ -2,8 +2,7 @@
 // What happened in a run, in sentences and numbers. All write HTML to PAGE, escaped by
 // html.h. Numbers have SI units with a prefix. What an artifact does not say is left
 // out; nothing here changes RUN.
-#ifndef CRAQUELURE_REPORT_FACTS_H
-#define CRAQUELURE_REPORT_FACTS_H
+#pragma once
 
 #include "body.h"
 
@@ -42,5 +41,3 @@ int row_of_half_rate(const struct course *course);
 
 // Everything that a reader should know before trusting a number.
 void put_warnings(FILE *page, const struct run *run, const struct shown_body *body);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A flow through the pores between grains: pressures, velocities, drag.
-#ifndef CRAQUELURE_REPORT_FLOW_H
-#define CRAQUELURE_REPORT_FLOW_H
+#pragma once
 
 #include "body.h"
 
@@ -19,5 +18,3 @@ json_t *put_flow(struct arrays *arrays, const struct run *run);
 // pressures, largest drag.
 void put_flow_headline(FILE *page, const struct run *run);
 void put_flow_facts(FILE *page, const struct run *run, const struct shown_body *body);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folders of runs, and ways between them. Paths are the user's, in any form; nothing
 // here is opened but to be listed.
-#ifndef CRAQUELURE_REPORT_FOLDERS_H
-#define CRAQUELURE_REPORT_FOLDERS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -29,5 +28,3 @@ char *link_text(const char *path);
 // FOLDER/NAME as a link in a page OUTPUT ("-": here), or NULL where it is not there.
 // The caller frees it.
 char *link_to(const char *folder, const char *name, const char *output);
-
-#endif

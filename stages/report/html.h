@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Text for people, and what keeps it text in a page.
-#ifndef CRAQUELURE_REPORT_HTML_H
-#define CRAQUELURE_REPORT_HTML_H
+#pragma once
 
 #include <jansson.h>
 #include <stdio.h>
@@ -31,5 +30,3 @@ const char *with_unit(double value, const char *unit, char text[40]);
 // VALUE to DIGITS digits, as %g, but without an exponent below 1e9: "1280". Returns
 // TEXT.
 const char *plain(double value, int digits, char text[40]);
-
-#endif

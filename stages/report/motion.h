@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that move: places and contact forces at snapshots, curves of the history.
-#ifndef CRAQUELURE_REPORT_MOTION_H
-#define CRAQUELURE_REPORT_MOTION_H
+#pragma once
 
 #include "body.h"
 
@@ -20,5 +19,3 @@ json_t *put_motion(struct arrays *arrays, const struct run *run,
 void put_motion_headline(FILE *page, const struct run *run);
 void put_motion_facts(FILE *page, const struct run *run, const struct course *course,
                       const struct shown_body *body);
-
-#endif

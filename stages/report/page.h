@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: its template (page/page.html) with everything in it.
-#ifndef CRAQUELURE_REPORT_PAGE_H
-#define CRAQUELURE_REPORT_PAGE_H
+#pragma once
 
 #include "body.h"
 #include "study.h"
@@ -22,5 +21,3 @@ struct contents {
 // The page as text of *SIZE bytes; the caller frees it. A terminating 0 follows the
 // *SIZE bytes. Equal contents give equal bytes: there is no date in it.
 char *page_of(const struct contents *contents, size_t *size);
-
-#endif

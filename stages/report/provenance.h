@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where a run comes from: what was modelled and what was not, the scene, the commands,
 // versions and digests.
-#ifndef CRAQUELURE_REPORT_PROVENANCE_H
-#define CRAQUELURE_REPORT_PROVENANCE_H
+#pragma once
 
 #include "run.h"
 
@@ -24,5 +23,3 @@ void put_commands(FILE *page, const struct run *run);
 // Rows of a table: artifact, program, digest; in the order in which artifacts were
 // read.
 void put_sources(FILE *page, const struct run *run);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page is made from: the artifacts of one run, each of which may be missing; or
 // one flow, or one motion.
-#ifndef CRAQUELURE_REPORT_RUN_H
-#define CRAQUELURE_REPORT_RUN_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -45,5 +44,3 @@ struct run {
 // where two are of one kind, or a flow or motion is not alone.
 struct run run_of_paths(const char *const *paths, int n);
 void close_run(struct run *run);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Many runs on one page: a row each, how their results scatter, and whether two groups
 // of them differ.
-#ifndef CRAQUELURE_REPORT_STUDY_H
-#define CRAQUELURE_REPORT_STUDY_H
+#pragma once
 
 #include <stdio.h>
 
@@ -31,5 +30,3 @@ void put_distributions(FILE *page, const struct study *study);
 
 // Two groups against each other; nothing where there are not two.
 void put_tests(FILE *page, const struct study *study);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A packing in a box so wide that each grain meets each other one in one image only,
 // as neighbour_pairs and nearest_image take for granted.
-#ifndef CRAQUELURE_RINGS_REPEATED_H
-#define CRAQUELURE_RINGS_REPEATED_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -12,5 +11,3 @@
 // caller frees it with packing_free.
 struct packing repeated_packing(const struct packing *packing, double reach,
                                 int *copies);
-
-#endif

@@ -8,8 +8,7 @@
 //     sites_free(&sites);
 // trace(pull) / 3 over the volume of the box is the stress by which rings press the
 // grains together. MEETING above 0 tells where the picture of single rings ends.
-#ifndef CRAQUELURE_RINGS_RETAINED_H
-#define CRAQUELURE_RINGS_RETAINED_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/packing.h"
@@ -51,5 +50,3 @@ struct retained {
 enum status retain(const struct packing *packing, struct ring_sites *sites,
                    const struct liquid *liquid, double suction,
                    struct retained *retained, struct reason *reason);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The shear band of a split-bottom cell: its centre and width at each height.
-#ifndef CRAQUELURE_SHEARSTATS_BAND_H
-#define CRAQUELURE_SHEARSTATS_BAND_H
+#pragma once
 
 #include "band_fit.h"
 #include "grid.h"
@@ -36,5 +35,3 @@ void fit_levels(const struct grid *grid, const double *sum, int snapshots,
 // between their neighbours.
 bool band_at(const struct split_cell *cell, const struct band_fit *fit, double height,
              double *centre, double *width);
-
-#endif

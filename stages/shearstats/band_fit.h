@@ -2,8 +2,7 @@
 // The error function through a profile [G 13]. Its slope at the centre is 1 / (sqrt(pi)
 // width), and 84 % of the change lies within a width of the centre on both sides. The
 // shear rate is a Gaussian with a standard deviation of width / sqrt(2).
-#ifndef CRAQUELURE_SHEARSTATS_BAND_FIT_H
-#define CRAQUELURE_SHEARSTATS_BAND_FIT_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -24,5 +23,3 @@ struct band_fit {
 // profile.
 struct band_fit fit_band(const double *r, const double *turned, int n,
                          double smoothing);
-
-#endif

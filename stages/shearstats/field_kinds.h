@@ -6,8 +6,7 @@
 //
 // A new field is a line in the enum, one in field_kinds.c, one in fields.c and a
 // dataset in schemas/shearstats.json.
-#ifndef CRAQUELURE_SHEARSTATS_FIELD_KINDS_H
-#define CRAQUELURE_SHEARSTATS_FIELD_KINDS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -67,5 +66,3 @@ static inline const double *field_at(const struct fields *fields, int cell,
 {
     return fields->value + (size_t)cell * (size_t)fields_width() + field_column(field);
 }
-
-#endif

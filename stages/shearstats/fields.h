@@ -4,8 +4,7 @@
 // Sums of snapshots, blocks or threads may be added before, not fields: quotients of
 // sums are no sums. fields.c has the formula of each field; field_kinds.h its place and
 // unit.
-#ifndef CRAQUELURE_SHEARSTATS_FIELDS_H
-#define CRAQUELURE_SHEARSTATS_FIELDS_H
+#pragma once
 
 #include "field_kinds.h"
 #include "sums.h"
@@ -15,5 +14,3 @@
 // SNAPSHOTS >= 1.
 struct fields make_fields(const struct grid *grid, const double *sum, int snapshots);
 void fields_free(struct fields *fields);
-
-#endif

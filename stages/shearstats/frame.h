@@ -2,8 +2,7 @@
 // Coordinates and local directions: Cartesian (x, y, z), or cylindrical about an axis
 // (r, angle, z along it), whose directions turn from place to place. Nothing depends on
 // the angle, which is therefore always 0.
-#ifndef CRAQUELURE_SHEARSTATS_FRAME_H
-#define CRAQUELURE_SHEARSTATS_FRAME_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -47,5 +46,3 @@ static inline void local_components(const struct place *place, struct vector v,
     for (int k = 0; k < 3; k++)
         component_of[k] = dot(place->direction[k], v);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cells of the fields: intervals along three axes, and how much of a point, spread
 // by the kernel along each axis, falls in each of them.
-#ifndef CRAQUELURE_SHEARSTATS_GRID_H
-#define CRAQUELURE_SHEARSTATS_GRID_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -50,5 +49,3 @@ int cell_beside(const struct grid *grid, int cell, int axis, int step);
 // number of cells reached times COUNT.
 void spread(const struct grid *grid, const double at[3], const double *value,
             size_t count, double *sum, size_t stride);
-
-#endif

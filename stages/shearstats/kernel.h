@@ -6,8 +6,7 @@
 // support: a point reaches few cells, and its integral is exact and cheap. phi and its
 // first two derivatives are 0 at the edge, so fields do not jump as grains enter a
 // cell.
-#ifndef CRAQUELURE_SHEARSTATS_KERNEL_H
-#define CRAQUELURE_SHEARSTATS_KERNEL_H
+#pragma once
 
 // The variance of phi is 1/9.
 enum { KERNEL_REACH = 3 }; // half width over smoothing length (standard deviation)
@@ -21,5 +20,3 @@ static inline double kernel_share(double u)
     const double s = u * u;
     return 0.5 + 35.0 / 32 * u * (1 - s * (1 - s * (3.0 / 5 - s / 7)));
 }
-
-#endif

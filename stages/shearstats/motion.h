@@ -2,8 +2,7 @@
 // What a motion artifact holds of grains, contacts and moments, in a window of time.
 // The positions of snapshots and the rows of sums have times of their own: a torque is
 // a mean over many more rows than there are snapshots.
-#ifndef CRAQUELURE_SHEARSTATS_MOTION_H
-#define CRAQUELURE_SHEARSTATS_MOTION_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "geometry/vector.h"
@@ -54,5 +53,3 @@ double wall_torque(const struct motion *motion, int t, int w, struct vector poin
                    struct vector axis);
 double group_torque(const struct motion *motion, int t, int g, struct vector about,
                     struct vector point, struct vector axis);
-
-#endif

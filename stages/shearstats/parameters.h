@@ -2,8 +2,7 @@
 // The parameters of shearstats. Members are in the order and the units of the table in
 // parameters.c: lengths in m, times in s, rates in 1/s; the texts of `--help` say what
 // each does. NAN and NULL: not given, then begin_study chooses from the first motion.
-#ifndef CRAQUELURE_SHEARSTATS_PARAMETERS_H
-#define CRAQUELURE_SHEARSTATS_PARAMETERS_H
+#pragma once
 
 #include "parameters/parameters.h"
 
@@ -40,5 +39,3 @@ extern const struct parameter shearstats_table[];
 // length, a window that ends before it begins, and a cell that has no rotation or no
 // axis.
 void check_shearstats_parameters(const struct shearstats_parameters *parameters);
-
-#endif

@@ -2,8 +2,7 @@
 // Shear stress against pressure where the material flows [G 14]. Grains that hardly
 // move have a shear stress below the yield stress, so only cells that flow lie on the
 // line.
-#ifndef CRAQUELURE_SHEARSTATS_RHEOLOGY_H
-#define CRAQUELURE_SHEARSTATS_RHEOLOGY_H
+#pragma once
 
 #include "field_kinds.h"
 #include "grid.h"
@@ -35,5 +34,3 @@ struct line_fit {
 struct line_fit fit_line(const double *pressure, const double *stress, int n);
 struct line_fit fit_rheology(const struct grid *grid, const struct fields *fields,
                              const struct flowing *flowing);
-
-#endif

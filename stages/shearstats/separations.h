@@ -2,8 +2,7 @@
 // Contacts and bridges by the separation of their grains [G 15]. The range of a run is
 // not divided into a given number of classes, as in [G 15]: classes of one width let
 // runs be added, and compared.
-#ifndef CRAQUELURE_SHEARSTATS_SEPARATIONS_H
-#define CRAQUELURE_SHEARSTATS_SEPARATIONS_H
+#pragma once
 
 #include "band.h"
 #include "frame.h"
@@ -40,5 +39,3 @@ void separations_free(struct separations *separations);
 // without a band at that height.
 bool inside_band(const struct split_cell *cell, const struct band_fit *fit, double r,
                  double z);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The strain rate of the coarse velocity.
-#ifndef CRAQUELURE_SHEARSTATS_STRAIN_RATE_H
-#define CRAQUELURE_SHEARSTATS_STRAIN_RATE_H
+#pragma once
 
 #include "field_kinds.h"
 #include "grid.h"
@@ -12,5 +11,3 @@
 // beside CELL, too.
 void strain_rate(const struct grid *grid, const struct fields *fields, int cell,
                  double rate[9]);
-
-#endif

@@ -3,8 +3,7 @@
 // begin_study looks at the first motion for whatever the user left open: smoothing from
 // its mean diameter, the grid from what its grains span, levels from the height of the
 // bed. Later motions are measured with the same.
-#ifndef CRAQUELURE_SHEARSTATS_STUDY_H
-#define CRAQUELURE_SHEARSTATS_STUDY_H
+#pragma once
 
 #include "band.h"
 #include "basics/status.h"
@@ -60,5 +59,3 @@ void study_free(struct study *study);
 enum status add_run(struct study *study, const struct motion *motion,
                     const struct shearstats_parameters *parameters, int threads,
                     struct reason *reason);
-
-#endif

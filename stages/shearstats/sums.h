@@ -2,8 +2,7 @@
 // What is summed over grains and contacts in each cell. A sum is additive over
 // snapshots, blocks and threads, fields are not: so sums are kept and fields are made
 // late (fields.c).
-#ifndef CRAQUELURE_SHEARSTATS_SUMS_H
-#define CRAQUELURE_SHEARSTATS_SUMS_H
+#pragma once
 
 #include "frame.h"
 #include "grid.h"
@@ -48,5 +47,3 @@ bool branch_of(const struct motion *motion, int s, int64_t k, struct vector *fro
 // Unit vector from the first grain of contact K to what it touches. Of a wall: to the
 // contact point. 0 if both lie in one place.
 struct vector contact_normal(const struct motion *motion, int s, int64_t k);
-
-#endif

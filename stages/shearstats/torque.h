@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The torque that turns a part of a cell: some walls and driven groups.
-#ifndef CRAQUELURE_SHEARSTATS_TORQUE_H
-#define CRAQUELURE_SHEARSTATS_TORQUE_H
+#pragma once
 
 #include "basics/status.h"
 #include "motion.h"
@@ -36,5 +35,3 @@ struct torque {
 struct torque mean_torque(const struct motion *motion, const struct part *part,
                           struct vector point, struct vector axis, double rate,
                           double from, double to, int blocks);
-
-#endif

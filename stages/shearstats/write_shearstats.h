@@ -2,8 +2,7 @@
 // The shearstats artifact: means over the runs with intervals, and each run. Shapes are
 // those of schemas/shearstats.json. The caller owns ARTIFACT and finishes it.
 // CONFIDENCE in (0, 1) is that of all half widths.
-#ifndef CRAQUELURE_SHEARSTATS_WRITE_SHEARSTATS_H
-#define CRAQUELURE_SHEARSTATS_WRITE_SHEARSTATS_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "study.h"
@@ -16,5 +15,3 @@ void put_fields(struct artifact *artifact, const struct study *study,
 // STUDY has not (a cell, a part whose torque is asked for) is left out.
 void put_statistics(struct artifact *artifact, const struct study *study,
                     double confidence);
-
-#endif

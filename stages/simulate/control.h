@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What changes while a scene runs: walls and groups that follow a table of time, servos
 // that keep a pressure, a box that is strained.
-#ifndef CRAQUELURE_SIMULATE_CONTROL_H
-#define CRAQUELURE_SIMULATE_CONTROL_H
+#pragma once
 
 #include "scene.h"
 
@@ -39,5 +38,3 @@ double servo_area(const struct scene *scene, const struct dem *dem, int w);
 // there are none. 0 where planes have passed each other. Round walls, rings and blocks
 // do not bound it: of a drum it is the box.
 double room(const struct scene *scene, const struct dem *dem);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run will take, for --estimate.
-#ifndef CRAQUELURE_SIMULATE_FORESEE_H
-#define CRAQUELURE_SIMULATE_FORESEE_H
+#pragma once
 
 #include "costs/costs.h"
 #include "scene.h"
@@ -12,5 +11,3 @@
 // not const because its number of threads is set.
 enum status foresee_run(const struct simulate_parameters *parameters,
                         struct scene *scene, struct cost *cost, struct reason *reason);
-
-#endif

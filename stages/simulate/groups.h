@@ -6,8 +6,7 @@
 // Groups are numbered from 0 in the order of their names; `group_of` has 1 + that
 // number, 0 for none. Driven groups have a second numbering of their own, that of the
 // engine, in `driven_group` and `driven_of`.
-#ifndef CRAQUELURE_SIMULATE_GROUPS_H
-#define CRAQUELURE_SIMULATE_GROUPS_H
+#pragma once
 
 #include "scene.h"
 
@@ -20,5 +19,3 @@
 enum status read_groups(const struct simulate_parameters *parameters,
                         const struct packing *packing, const struct vector *velocity,
                         struct scene *scene, struct reason *reason);
-
-#endif

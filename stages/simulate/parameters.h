@@ -6,8 +6,7 @@
 //
 // stage_begin fills the struct; the caller frees the four named_rows with
 // named_rows_free.
-#ifndef CRAQUELURE_SIMULATE_PARAMETERS_H
-#define CRAQUELURE_SIMULATE_PARAMETERS_H
+#pragma once
 
 #include "dem/dem.h"
 #include "parameters/conditions.h"
@@ -113,5 +112,3 @@ extern const struct parameter simulate_table[];
 // needs. What depends on the packing or on names is scene_init's. On the first fault it
 // writes one line with the key to stderr.
 void check_parameters(const struct simulate_parameters *parameters);
-
-#endif

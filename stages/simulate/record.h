@@ -6,8 +6,7 @@
 // other; /snapshots/contacts says how many rows each has.
 //
 // SI throughout. What a row holds is the schema's to say (schemas/motion.json).
-#ifndef CRAQUELURE_SIMULATE_RECORD_H
-#define CRAQUELURE_SIMULATE_RECORD_H
+#pragma once
 
 #include "checkpoint/named_arrays.h"
 #include "checkpoint/stream.h"
@@ -56,5 +55,3 @@ void record_snapshot(struct record *record,
 // Writes all columns to STREAM, or reads them. Reading replaces what the record holds.
 // The stream knows by itself which of both it does, and whether it failed.
 void record_state(struct record *record, struct checkpoint_stream *stream);
-
-#endif

@@ -2,8 +2,7 @@
 // The run: cycles of the engine between the moments at which something is recorded or
 // changed. The only file of the stage that advances the engine. It knows nothing of
 // artifacts.
-#ifndef CRAQUELURE_SIMULATE_RUN_H
-#define CRAQUELURE_SIMULATE_RUN_H
+#pragma once
 
 #include "checkpoint/keeper.h"
 #include "record.h"
@@ -36,5 +35,3 @@ enum status run_scene(const struct simulate_parameters *parameters, struct scene
                       void (*tell)(void *context, double fraction), void *context,
                       const struct keeper *keeper, struct outcome *outcome,
                       struct reason *reason);
-
-#endif

@@ -6,8 +6,7 @@
 // Units stay SI. Defaults that depend on another parameter are filled in here (a
 // stiffness in shear from the normal one, damping from the restitution, water as the
 // liquid); the engine gets numbers only.
-#ifndef CRAQUELURE_SIMULATE_SCENE_H
-#define CRAQUELURE_SIMULATE_SCENE_H
+#pragma once
 
 #include "basics/status.h"
 #include "parameters.h"
@@ -57,5 +56,3 @@ group_row(const struct simulate_parameters *parameters, int k)
 {
     return (const struct group_parameters *)parameters->groups.row + k;
 }
-
-#endif

@@ -2,8 +2,7 @@
 // The motion artifact, or the packing at the end. Lengths, times and forces in SI,
 // shapes as in schemas/motion.json and schemas/packing.json. The caller owns ARTIFACT
 // and finishes it.
-#ifndef CRAQUELURE_SIMULATE_WRITE_MOTION_H
-#define CRAQUELURE_SIMULATE_WRITE_MOTION_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "run.h"
@@ -21,5 +20,3 @@ void put_motion(struct artifact *artifact, const struct scene *scene,
 void put_final_packing(struct artifact *artifact,
                        const struct simulate_parameters *parameters,
                        const struct scene *scene, const struct outcome *outcome);
-
-#endif

@@ -3,8 +3,7 @@
 // arrays that they fill, which then belong to the network; they need a network without
 // any, but with its packing. The results depend on the nodes alone, not on the order of
 // the cells or the number of threads.
-#ifndef CRAQUELURE_ASSEMBLE_H
-#define CRAQUELURE_ASSEMBLE_H
+#pragma once
 
 #include "diagram.h"
 #include "generators.h"
@@ -27,5 +26,3 @@ void assemble_throats(const struct assembly *assembly, struct network *network);
 // Fills the faces: each a loop of nodes, normal pointing from its first side to its
 // second, sorted by the grains they separate.
 void assemble_faces(const struct assembly *assembly, struct network *network);
-
-#endif

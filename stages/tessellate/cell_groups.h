@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Groups of cells that may share a node, as copies of each other in a periodic box do:
 // such cells have the same bases, and so the same lowest one.
-#ifndef CRAQUELURE_CELL_GROUPS_H
-#define CRAQUELURE_CELL_GROUPS_H
+#pragma once
 
 #include "generators.h"
 #include "geometry/triangulation/regular_triangulation.h"
@@ -24,5 +23,3 @@ struct cell_groups {
 struct cell_groups group_cells(const struct generators *generators,
                                struct triangulation *triangulation);
 void cell_groups_free(struct cell_groups *groups);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Networks cut by the surface of a body: cylinder, sphere, or the inside of a ring.
-#ifndef CRAQUELURE_CUT_H
-#define CRAQUELURE_CUT_H
+#pragma once
 
 #include "basics/status.h"
 #include "diagram.h"
@@ -20,5 +19,3 @@
 // the box repeats where the grains lie within a round wall.
 enum status cut_network(struct network *network, int k, enum clearance clearance,
                         struct reason *reason);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From grains to their pore network: the edges of the diagram are the throats [K 3.3].
-#ifndef CRAQUELURE_DIAGRAM_H
-#define CRAQUELURE_DIAGRAM_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/clearance.h"
@@ -43,5 +42,3 @@ struct tessellation_report {
 enum status tessellate(const struct packing *packing, const struct tessellation *how,
                        struct network *network, struct tessellation_report *report,
                        struct reason *reason);
-
-#endif

@@ -11,8 +11,7 @@
 // Each grain is reflected in a plane that is tangent to a slightly larger one: such
 // images own nothing within the wall, and only close the cells beyond it, where
 // cut_network cuts them.
-#ifndef CRAQUELURE_GENERATORS_H
-#define CRAQUELURE_GENERATORS_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/image.h"
@@ -91,5 +90,3 @@ static inline int compare_generators(const struct generators *generators, int32_
     return image_number(generators->origin[a].image) -
            image_number(generators->origin[b].image);
 }
-
-#endif

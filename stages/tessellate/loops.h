@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A network rebuilt from the loops of its faces.
-#ifndef CRAQUELURE_LOOPS_H
-#define CRAQUELURE_LOOPS_H
+#pragma once
 
 #include "network/network.h"
 #include "sort_rows.h"
@@ -39,5 +38,3 @@ void loops_add_throat(struct loops *loops, struct corner a, struct corner b,
 // by those that join corners of them; removes nodes that are no corner. All throats get
 // the kind THROAT_NETWORK. Empties LOOPS.
 void loops_to_network(struct loops *loops, struct network *network);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The nodes of the diagram: the points of equal power to four generators [K 3.3.4].
-#ifndef CRAQUELURE_NODES_H
-#define CRAQUELURE_NODES_H
+#pragma once
 
 #include "generators.h"
 #include "geometry/triangulation/regular_triangulation.h"
@@ -23,5 +22,3 @@ enum status find_nodes(const struct generators *generators,
                        struct triangulation *triangulation, struct nodes *nodes,
                        struct reason *reason);
 void nodes_free(struct nodes *nodes);
-
-#endif

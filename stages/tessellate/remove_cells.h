@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Removal of cells from a complete network, and its reduction to a plane.
-#ifndef CRAQUELURE_REMOVE_CELLS_H
-#define CRAQUELURE_REMOVE_CELLS_H
+#pragma once
 
 #include "network/network.h"
 
@@ -24,5 +23,3 @@ void reduce_to_plane(struct network *network);
 // Removes the nodes whose NUMBER (n_node) is negative; for the others NUMBER becomes
 // the new index.
 void compact_nodes(struct network *network, int *number);
-
-#endif

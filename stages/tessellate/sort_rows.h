@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sorting of rows of a few integers, in linear time if few rows share their first key.
-#ifndef CRAQUELURE_SORT_ROWS_H
-#define CRAQUELURE_SORT_ROWS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -21,5 +20,3 @@ struct row *sort_rows(struct row *rows, int count);
 
 // Sorts a few rows in place, in the same order.
 void sort_few_rows(struct row *rows, int count);
-
-#endif

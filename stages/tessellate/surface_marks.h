@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Marks of the walls at a surface where the body ends at removed cells, or at
 // auxiliary grains, instead of at walls [K 3.3.5, 3.7].
-#ifndef CRAQUELURE_SURFACE_MARKS_H
-#define CRAQUELURE_SURFACE_MARKS_H
+#pragma once
 
 #include "network/network.h"
 
@@ -15,5 +14,3 @@ void face_walls(struct network *network, const bool *stay, bool layer);
 // If there are auxiliary grains, throats with no other grain beside them get the kind
 // THROAT_BOUNDARY_LAYER, and the nodes of the grains below get the bit of their wall.
 void mark_boundary_layer(struct network *network, bool layer);
-
-#endif

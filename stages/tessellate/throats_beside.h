@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Look-up of throats in a network whose throats are sorted by their nodes, as
 // tessellate writes them.
-#ifndef CRAQUELURE_THROATS_BESIDE_H
-#define CRAQUELURE_THROATS_BESIDE_H
+#pragma once
 
 #include "network/network.h"
 
@@ -13,5 +12,3 @@ int first_throat_between(const struct network *network, const int32_t ends[2]);
 // throat is an edge of a face of such a grain. The caller frees it. O(corners log
 // n_throat).
 bool *throats_beside(const struct network *network, const bool *grains);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A row of grains in a plane, held at its first and pulled at its last, as a chain of
 // hinges: integrated by Runge and Kutta's method, and its Euler load in closed form.
-#ifndef CRAQUELURE_TEST_BENT_ROW_H
-#define CRAQUELURE_TEST_BENT_ROW_H
+#pragma once
 
 #include "equilibrium_scene.h"
 
@@ -150,5 +149,3 @@ static inline struct row buckled_row(double force)
     const struct row bent = bend_row((struct row){.angle = aside}, force, aside, 400);
     return bend_row(bent, force, M_PI, 400);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A lattice of bonded grains whose bonds are broken by hand, for the tests of
 // crackstats.
-#ifndef CRAQUELURE_TEST_CRACK_LATTICE_H
-#define CRAQUELURE_TEST_CRACK_LATTICE_H
+#pragma once
 
 #include "../test.h"
 #include "basics/memory.h"
@@ -64,5 +63,3 @@ static inline int bond_between(const struct run *run, int a, int b)
     fail_msg("no bond between %d and %d", a, b);
     return -1;
 }
-
-#endif

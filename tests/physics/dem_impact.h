@@ -4,8 +4,7 @@
 //
 // Grain 0 comes from above (z > 0) onto the plane z = 0, or onto grain 1 below it. They
 // touch at the start, or ONSET time steps later.
-#ifndef CRAQUELURE_TEST_DEM_IMPACT_H
-#define CRAQUELURE_TEST_DEM_IMPACT_H
+#pragma once
 
 #include "basics/memory.h"
 #include "dem/dem.h"
@@ -130,5 +129,3 @@ static inline struct outcome run_impact(const struct impact *is)
     dem_free(dem);
     return out;
 }
-
-#endif

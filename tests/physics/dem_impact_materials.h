@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The materials of Chung & Ooi (2011), where they are elastic unless a test says
 // otherwise.
-#ifndef CRAQUELURE_TEST_DEM_IMPACT_MATERIALS_H
-#define CRAQUELURE_TEST_DEM_IMPACT_MATERIALS_H
+#pragma once
 
 #include "dem/dem.h"
 
@@ -31,5 +30,3 @@ static const struct dem_material alloy = {.density = 2700,
                                           .restitution = 0.5,
                                           .young_modulus = 70e9,
                                           .poisson_ratio = 0.33};
-
-#endif

@@ -2,8 +2,7 @@
 // What impacts should give: Hertz' closed forms, rigid bodies that slide throughout,
 // the contact law integrated apart from the engine, and elastic spheres with partial
 // slip.
-#ifndef CRAQUELURE_TEST_DEM_IMPACT_THEORY_H
-#define CRAQUELURE_TEST_DEM_IMPACT_THEORY_H
+#pragma once
 
 #include "basics/memory.h"
 #include "dem_impact.h"
@@ -250,5 +249,3 @@ static inline double partial_slip_rebound(double psi, double poisson_ratio)
     free(m.disc);
     return speed / -rate;
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes for the tests of the discrete elements: lattices of bonded grains with the
 // numbers of [K Table 5.1], built in memory.
-#ifndef CRAQUELURE_TEST_DEM_SCENE_H
-#define CRAQUELURE_TEST_DEM_SCENE_H
+#pragma once
 
 #include "../random.h"
 #include "../test.h"
@@ -180,5 +179,3 @@ static inline void assert_refused(struct dem_setup setup, const char *why)
     assert_null(dem);
     if (!strstr(reason.text, why)) fail_msg("%s", reason.text);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes for the tests of equilibrium: grains bonded as in [K Table 5.1], a block of
 // them, and its loads.
-#ifndef CRAQUELURE_TEST_EQUILIBRIUM_SCENE_H
-#define CRAQUELURE_TEST_EQUILIBRIUM_SCENE_H
+#pragma once
 
 #include "dem_scene.h"
 #include "support_equilibrium.h"
@@ -77,5 +76,3 @@ static inline double apart(const struct vector *a, const struct vector *b)
     }
     return most / size;
 }
-
-#endif

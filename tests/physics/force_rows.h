@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All forces of a protocol, for tests that look at them beside each other.
-#ifndef CRAQUELURE_TEST_FORCE_ROWS_H
-#define CRAQUELURE_TEST_FORCE_ROWS_H
+#pragma once
 
 #include "basics/memory.h"
 #include "force-protocol/protocol.h"
@@ -21,5 +20,3 @@ static inline struct protocol whole_protocol(const struct process *process,
         memcpy(*all + (size_t)protocol.row * n, protocol.force, n * sizeof **all);
     return protocol;
 }
-
-#endif

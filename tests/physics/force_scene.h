@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pulls of throats on grains, for the tests of them.
-#ifndef CRAQUELURE_TEST_FORCE_SCENE_H
-#define CRAQUELURE_TEST_FORCE_SCENE_H
+#pragma once
 
 #include "../test.h"
 #include "force-protocol/solid_angle_patches.h"
@@ -31,5 +30,3 @@ static inline struct patches patches_of(const struct network *network, enum form
     sectors_free(&sectors);
     return patches;
 }
-
-#endif

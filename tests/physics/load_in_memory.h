@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rows of a load from an array of all.
-#ifndef CRAQUELURE_TEST_LOAD_IN_MEMORY_H
-#define CRAQUELURE_TEST_LOAD_IN_MEMORY_H
+#pragma once
 
 #include "dem-replay/replay.h"
 
@@ -16,5 +15,3 @@ static inline const struct vector *row_in_memory(void *rows, int row)
     const struct rows_in_memory *of = rows;
     return of->force + (ptrdiff_t)row * of->n;
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibria and replays that have to succeed, or the test fails.
-#ifndef CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
-#define CRAQUELURE_TEST_SUPPORT_EQUILIBRIUM_H
+#pragma once
 
 #include "dem-replay/replay.h"
 #include "quasi_static/quasi_static.h"
@@ -14,5 +13,3 @@ struct response replay_or_fail(const struct packing *packing, const struct load 
 // Cycles of the same grains and joints, with dashpots, whose steps are SAFETY of
 // [K 4.47].
 struct dem_setup cycles_of(const struct quasi_static_setup *setup, double safety);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Aggregates of grains of many sizes at irregular places, bonded over small gaps.
-#ifndef CRAQUELURE_TEST_SUPPORT_IRREGULAR_H
-#define CRAQUELURE_TEST_SUPPORT_IRREGULAR_H
+#pragma once
 
 #include "../random.h"
 #include "geometry/packing.h"
@@ -21,5 +20,3 @@ struct vector turned(struct vector a, struct vector axis, double angle);
 
 // Forces towards the middle of the box, uneven, at most SIZE N. (n_particle)
 struct vector *shrinking_load(const struct packing *packing, double size);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Networks to dry: cubic lattices of nodes with the grains at the centres of the cubes.
-#ifndef CRAQUELURE_SUPPORT_LATTICE_H
-#define CRAQUELURE_SUPPORT_LATTICE_H
+#pragma once
 
 #include "../random.h"
 #include "dry/run/drying.h"
@@ -39,5 +38,3 @@ struct drying_history dry_and_check(const struct network *network,
 // the same vapour and whose pressures are the same.
 void check_dries_alike_enlarged(struct network *network,
                                 struct drying_conditions conditions);
-
-#endif

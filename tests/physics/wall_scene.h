@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scenes for the tests of rigid walls: a few grains of 1 mm among them.
-#ifndef CRAQUELURE_TEST_WALL_SCENE_H
-#define CRAQUELURE_TEST_WALL_SCENE_H
+#pragma once
 
 #include "dem_scene.h"
 
@@ -64,5 +63,3 @@ static inline void assert_near(struct vector got, struct vector wanted, double w
         fail_msg("got (%.12g, %.12g, %.12g), wanted (%.12g, %.12g, %.12g) within %g",
                  got.x, got.y, got.z, wanted.x, wanted.y, wanted.z, within);
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Diagrams of scattered grains, for the test of wedges: in boxes, in layers, below
 // auxiliary grains, in a sphere and around one.
-#ifndef CRAQUELURE_TEST_WEDGE_SCENE_H
-#define CRAQUELURE_TEST_WEDGE_SCENE_H
+#pragma once
 
 #include "../random.h"
 #include "../test.h"
@@ -191,5 +190,3 @@ static inline void turn_loops(struct network *network)
         }
     }
 }
-
-#endif

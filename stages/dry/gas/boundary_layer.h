@@ -8,8 +8,7 @@
 // share an edge exchange through it, square to the line between them. The areas sum to
 // the face whatever the network; on the cubic lattice they are K's L^2, and half of it
 // for links along the surface.
-#ifndef CRAQUELURE_BOUNDARY_LAYER_H
-#define CRAQUELURE_BOUNDARY_LAYER_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -76,5 +75,3 @@ enum status boundary_layers_init(const struct network *network, unsigned walls,
                                  struct boundary_layer *layer, struct reason *reason);
 
 void boundary_layer_free(struct boundary_layer *layer);
-
-#endif

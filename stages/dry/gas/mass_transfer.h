@@ -3,8 +3,7 @@
 // knows of the air flow. The layer stands for the gradient of vapour beside the body:
 // through a thickness epsilon the flux is delta / epsilon times the difference of
 // densities, as beta times it is.
-#ifndef CRAQUELURE_MASS_TRANSFER_H
-#define CRAQUELURE_MASS_TRANSFER_H
+#pragma once
 
 #include "basics/status.h"
 
@@ -42,5 +41,3 @@ struct mass_transfer {
 enum status find_mass_transfer(enum transfer_law law, const struct air_flow *flow,
                                double diffusivity, struct mass_transfer *transfer,
                                struct reason *reason);
-
-#endif

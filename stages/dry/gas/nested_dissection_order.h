@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An order in which eliminating the columns of a boundary layer costs little.
-#ifndef CRAQUELURE_NESTED_DISSECTION_ORDER_H
-#define CRAQUELURE_NESTED_DISSECTION_ORDER_H
+#pragma once
 
 #include "boundary_layer.h"
 
@@ -10,5 +9,3 @@
 // indices into layer->exposed, a permutation; the caller frees it. O(n log^2 n).
 int *nested_dissection_order(const struct network *network,
                              const struct boundary_layer *layer);
-
-#endif

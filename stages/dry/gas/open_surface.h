@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The side of the body that is open to the air, seen along the columns of the boundary
 // layer.
-#ifndef CRAQUELURE_OPEN_SURFACE_H
-#define CRAQUELURE_OPEN_SURFACE_H
+#pragma once
 
 #include "network/network.h"
 #include "planar_region.h"
@@ -28,5 +27,3 @@ struct open_surface open_surface_of(const struct network *network, int wall,
 struct planar place_on_face(const struct open_surface *face, int node);
 
 void open_surface_free(struct open_surface *face);
-
-#endif

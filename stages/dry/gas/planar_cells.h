@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The Voronoi diagram of points in a region of a rectangle: the area that is nearest to
 // each point, and the edge that each two neighbours share.
-#ifndef CRAQUELURE_PLANAR_CELLS_H
-#define CRAQUELURE_PLANAR_CELLS_H
+#pragma once
 
 #include "planar_region.h"
 
@@ -29,5 +28,3 @@ struct planar_cells planar_cells_init(const struct planar *point, int n,
                                       const struct planar_region *region);
 
 void planar_cells_free(struct planar_cells *cells);
-
-#endif

@@ -2,8 +2,7 @@
 // A part of a rectangle, bounded by straight sides: how much of a polygon or a line
 // lies in it. The open side of a body as seen from above, for the exchange areas of the
 // boundary layer. In m, or scaled; all in one unit.
-#ifndef CRAQUELURE_PLANAR_REGION_H
-#define CRAQUELURE_PLANAR_REGION_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -43,5 +42,3 @@ bool region_holds(const struct planar_region *region, struct planar origin,
 
 // What it owns; the region is empty then.
 void planar_region_free(struct planar_region *region);
-
-#endif

@@ -8,8 +8,7 @@
 // dry. The links that remain join wet nodes with each other, where nothing flows since
 // all are at 0, and with the air, at 1: a wet node evaporates its conductance to the
 // air.
-#ifndef CRAQUELURE_VAPOUR_H
-#define CRAQUELURE_VAPOUR_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "boundary_layer.h"
@@ -43,5 +42,3 @@ double vapour_rate(const struct vapour *vapour);
 double vapour_evaporation(const struct vapour *vapour, int node);
 
 void vapour_free(struct vapour *vapour);
-
-#endif

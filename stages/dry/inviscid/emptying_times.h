@@ -12,8 +12,7 @@
 // vapour from them. They are numbered behind the throats: n_throat + node. Films let
 // their cluster lose it in their place, as long as it has a throat with liquid; those
 // of finite resistance, as far as they reach (film_supply.h).
-#ifndef CRAQUELURE_EMPTYING_TIMES_H
-#define CRAQUELURE_EMPTYING_TIMES_H
+#pragma once
 
 #include "dry/liquid/occupancy.h"
 
@@ -86,5 +85,3 @@ void emptying_times_state(struct emptying_times *times,
                           struct checkpoint_stream *stream);
 
 void emptying_times_free(struct emptying_times *times);
-
-#endif

@@ -3,8 +3,7 @@
 // The liquid throats at a wet node share its evaporation in proportion to their
 // cross-sections; a reservoir loses the sum of its shares. Rates are scaled
 // (conditions.h).
-#ifndef CRAQUELURE_EVAPORATION_SHARES_H
-#define CRAQUELURE_EVAPORATION_SHARES_H
+#pragma once
 
 #include "emptying_times.h"
 
@@ -55,5 +54,3 @@ void evaporation_shares_add_up(struct emptying_times *times);
 // Keeps shares and sums, or restores them.
 void evaporation_shares_state(struct emptying_times *times,
                               struct checkpoint_stream *stream);
-
-#endif

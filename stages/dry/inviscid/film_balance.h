@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The levels of the sites of a film_flow that are not held, by their balances: one
 // linear system, for one set of held sites.
-#ifndef CRAQUELURE_FILM_BALANCE_H
-#define CRAQUELURE_FILM_BALANCE_H
+#pragma once
 
 #include "film_flow.h"
 
@@ -18,5 +17,3 @@ void film_factor_free(struct film_factor *factor);
 // others add up to TOLERANCE at most, or to what rounding of levels makes; false if
 // that is not reached.
 bool film_balance(struct film_flow *flow, double tolerance, double *residual);
-
-#endif

@@ -4,8 +4,7 @@
 // loses a throat, its level changes, and while the flow is nearly the same, all levels
 // of the basin change with it. So the cluster whose least is now highest above, or
 // least below, the level that it had supplies the basin.
-#ifndef CRAQUELURE_FILM_BASINS_H
-#define CRAQUELURE_FILM_BASINS_H
+#pragma once
 
 #include "film_flow.h"
 
@@ -34,5 +33,3 @@ double film_basins_fall(const struct film_basins *basins, int place);
 
 // What nodes evaporate that films have no longer reached at some moment since then.
 double film_basins_failing(const struct film_basins *basins);
-
-#endif

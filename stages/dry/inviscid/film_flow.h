@@ -6,8 +6,7 @@
 // bring what leaves, or the level is the least that it can be, and the site supplies
 // the surplus, above 0, from what it stores:
 //     level >= least,   surplus >= 0,   (level - least) surplus = 0.
-#ifndef CRAQUELURE_FILM_FLOW_H
-#define CRAQUELURE_FILM_FLOW_H
+#pragma once
 
 #include "elimination/conductance_matrix.h"
 
@@ -34,5 +33,3 @@ struct film_flow {
 // TOLERANCE in all at most, or what rounding of levels makes. False if that is not
 // reached.
 bool film_flow_solve(struct film_flow *flow, double tolerance);
-
-#endif

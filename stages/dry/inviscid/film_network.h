@@ -6,8 +6,7 @@
 // A node beside liquid counts as its cluster. Where several clusters are beside it, the
 // film is divided among them in proportion to the cross-sections of their throats, as
 // what the node evaporates is: so clusters are not joined at a node, only by films.
-#ifndef CRAQUELURE_FILM_NETWORK_H
-#define CRAQUELURE_FILM_NETWORK_H
+#pragma once
 
 #include "dry/liquid/occupancy.h"
 #include "elimination/conductance_matrix.h"
@@ -42,5 +41,3 @@ double film_network_weigh(struct film_network *films, const struct film_law *law
                           const struct compensated *level);
 
 void film_network_free(struct film_network *films);
-
-#endif

@@ -7,8 +7,7 @@
 // of what it evaporates the part `own`, from 0 to 1, while films bring the rest, and
 // `drawn`, which films take from it to elsewhere. `scale` makes the sum of all losses
 // what goes into the air, exactly; it is 1 when the flow in films has just been found.
-#ifndef CRAQUELURE_FILM_SUPPLY_H
-#define CRAQUELURE_FILM_SUPPLY_H
+#pragma once
 
 #include "emptying_times.h"
 
@@ -49,5 +48,3 @@ void film_supply_set_rates(struct emptying_times *times);
 
 // THROAT of CLUSTER has emptied, and what has parted from it are clusters of their own.
 void film_supply_empty_throat(struct emptying_times *times, int throat, int cluster);
-
-#endif

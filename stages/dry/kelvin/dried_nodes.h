@@ -3,8 +3,7 @@
 // its ends, or that split, are replaced by others; nodes that dry are eliminated. So
 // the matrix need not be made anew at each event: the caller replaces the rows listed
 // here and keeps the rest.
-#ifndef CRAQUELURE_DRIED_NODES_H
-#define CRAQUELURE_DRIED_NODES_H
+#pragma once
 
 #include "dry/liquid/occupancy.h"
 
@@ -49,5 +48,3 @@ void dried_nodes_note_after(struct dried_nodes *dried,
 void dried_nodes_clear(struct dried_nodes *dried);
 
 void dried_nodes_free(struct dried_nodes *dried);
-
-#endif

@@ -6,8 +6,7 @@
 // leaves adds or deletes a row, and so does one whose nodes change; a node that dries
 // is eliminated by one downdate. The factor only saves time: without it the next
 // solution makes it again, from the vapour as it is.
-#ifndef CRAQUELURE_EQUILIBRATED_MENISCI_H
-#define CRAQUELURE_EQUILIBRATED_MENISCI_H
+#pragma once
 
 #include "kelvin_menisci.h"
 
@@ -37,5 +36,3 @@ void equilibrated_forget(struct equilibrated_menisci *equilibrated);
 bool solve_zero_flux(struct kelvin_menisci *kelvin, const struct occupancy *occupancy);
 
 void equilibrated_free(struct equilibrated_menisci *equilibrated);
-
-#endif

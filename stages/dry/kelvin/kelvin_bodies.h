@@ -2,8 +2,7 @@
 // The bodies of liquid beside gas, and the share of each in the wet nodes. A body is a
 // cluster, or in immobile liquid a throat: what has one pressure, and so one vapour
 // pressure at its menisci.
-#ifndef CRAQUELURE_KELVIN_BODIES_H
-#define CRAQUELURE_KELVIN_BODIES_H
+#pragma once
 
 #include "kelvin_menisci.h"
 
@@ -19,5 +18,3 @@ void kelvin_find_gravity_potentials(struct kelvin_menisci *kelvin,
 // Whether the throat where gas enters the body at PLACE is full, to rounding.
 bool kelvin_is_full(const struct kelvin_menisci *kelvin,
                     const struct occupancy *occupancy, int place);
-
-#endif

@@ -2,8 +2,7 @@
 // What bodies of liquid evaporate at given potentials, and the rounding of it.
 // Evaporation is a sum of conductances times differences of potential, in which large
 // terms of both signs may cancel: so its rounding is found along with it.
-#ifndef CRAQUELURE_KELVIN_EVAPORATION_H
-#define CRAQUELURE_KELVIN_EVAPORATION_H
+#pragma once
 
 #include "kelvin_menisci.h"
 
@@ -18,5 +17,3 @@ void kelvin_find_conductance_bounds(struct kelvin_menisci *kelvin,
 
 // Sets kelvin->noise of each body: evaporation below it is rounding.
 void kelvin_find_noise(struct kelvin_menisci *kelvin);
-
-#endif

@@ -9,8 +9,7 @@
 //     drop = ln(1 + (p_sat - p_inf) / (p_g - p_sat)).
 // Below 0 a meniscus bulges, and its vapour is above saturation. In wide throats x is
 // tiny: log1p and expm1 keep its digits.
-#ifndef CRAQUELURE_KELVIN_LAW_H
-#define CRAQUELURE_KELVIN_LAW_H
+#pragma once
 
 #include "dry/conditions.h"
 
@@ -39,5 +38,3 @@ double kelvin_least_exponent(const struct kelvin_law *law);
 // drying air: it never dries. STATUS_OK without the Kelvin effect.
 enum status check_kelvin(const struct drying_conditions *conditions,
                          const struct network *network, struct reason *reason);
-
-#endif

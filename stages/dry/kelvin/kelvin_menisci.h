@@ -14,8 +14,7 @@
 // the body become flatter until it neither evaporates nor condenses. Its pressure is
 // unknown: nothing may condense, and no meniscus may be more curved than its throat
 // makes it (an obstacle problem).
-#ifndef CRAQUELURE_KELVIN_MENISCI_H
-#define CRAQUELURE_KELVIN_MENISCI_H
+#pragma once
 
 #include "dry/conditions.h"
 #include "dry/liquid/losses.h"
@@ -108,5 +107,3 @@ void kelvin_menisci_state(struct kelvin_menisci *kelvin, const struct network *n
                           struct checkpoint_stream *stream);
 
 void kelvin_menisci_free(struct kelvin_menisci *kelvin);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How what menisci evaporate decreases with their potentials: bounds, from the
 // conductances of the vapour's links, and the response of the flow made of them.
-#ifndef CRAQUELURE_KELVIN_RESPONSE_H
-#define CRAQUELURE_KELVIN_RESPONSE_H
+#pragma once
 
 #include "kelvin_viscous.h"
 
@@ -17,5 +16,3 @@ void find_response_bounds(struct kelvin_viscous *coupling,
 // change together with their cluster, else alone. An estimate: it sets how fast the
 // fixed point converges, not where to.
 void set_responses(struct kelvin_viscous *coupling, const struct occupancy *occupancy);
-
-#endif

@@ -13,8 +13,7 @@
 // left to kelvin_menisci.h: nothing flows in it, and it waits where vapour would
 // condense. A cluster of several waits too if none of its menisci moves: then their
 // response determines its pressure.
-#ifndef CRAQUELURE_KELVIN_VISCOUS_H
-#define CRAQUELURE_KELVIN_VISCOUS_H
+#pragma once
 
 #include "dry/liquid/viscous.h"
 #include "kelvin_menisci.h"
@@ -54,5 +53,3 @@ void kelvin_viscous_state(struct kelvin_viscous *coupling,
                           struct checkpoint_stream *stream);
 
 void kelvin_viscous_free(struct kelvin_viscous *coupling);
-
-#endif

@@ -7,8 +7,7 @@
 // In code order, S_ab = sum over wet nodes k of part_ak air_conductance_k part_bk
 //     + sum over links (k, l) of c_kl (part_ak - part_al) (part_bk - part_bl):
 // as differences of parts, so that a link inside one body adds exactly 0.
-#ifndef CRAQUELURE_SCHUR_ROWS_H
-#define CRAQUELURE_SCHUR_ROWS_H
+#pragma once
 
 #include "kelvin_menisci.h"
 
@@ -47,5 +46,3 @@ void schur_rows_take(struct schur_rows *rows, const struct kelvin_menisci *kelvi
 void schur_rows_clear(struct schur_rows *rows);
 
 void schur_rows_free(struct schur_rows *rows);
-
-#endif

@@ -2,8 +2,7 @@
 // Potentials and flows in one cluster whose moving menisci are known [K 3.10]. A large
 // cluster has a Laplacian with an updated Cholesky factor; one that is small, or whose
 // balances do not close, is eliminated.
-#ifndef CRAQUELURE_CLUSTER_FLOW_H
-#define CRAQUELURE_CLUSTER_FLOW_H
+#pragma once
 
 #include "flow_solver.h"
 
@@ -27,5 +26,3 @@ double solve_cluster_cholesky(struct liquid_flow *flow, struct cluster_problem *
 // cluster is too small for one: then its nodes are listed in the solver.
 struct cluster_laplacian *find_graph(struct liquid_flow *flow,
                                      const struct cluster_problem *problem);
-
-#endif

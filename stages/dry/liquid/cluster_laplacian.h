@@ -8,8 +8,7 @@
 //
 // In node i:  residual_i = source_i + sum_j conductance_ij (potential_j - potential_i)
 //                          + sum over its arms of conductance (level - potential_i).
-#ifndef CRAQUELURE_CLUSTER_LAPLACIAN_H
-#define CRAQUELURE_CLUSTER_LAPLACIAN_H
+#pragma once
 
 #include "basics/compensated.h"
 
@@ -82,5 +81,3 @@ double cluster_laplacian_residual(struct cluster_laplacian *graph);
 bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance);
 
 void cluster_laplacian_free(struct cluster_laplacian *graph);
-
-#endif

@@ -2,8 +2,7 @@
 // The throats of each cluster in two lists: those that gas touches, and the others.
 // When a throat empties only the lists of its neighbours and of moved throats change.
 // Without lists each event would have to look at all throats of its cluster.
-#ifndef CRAQUELURE_CLUSTER_MEMBERS_H
-#define CRAQUELURE_CLUSTER_MEMBERS_H
+#pragma once
 
 #include "clusters.h"
 
@@ -38,5 +37,3 @@ static inline int cluster_members_first(const struct cluster_members *members,
 }
 
 void cluster_members_free(struct cluster_members *members);
-
-#endif

@@ -6,8 +6,7 @@
 // be separated: searches start from each of them and advance in turn; those that meet
 // are united, one that is exhausted has found a new cluster, and the last keeps the old
 // identity without a search to its end. So a split costs as much as its smaller parts.
-#ifndef CRAQUELURE_CLUSTERS_H
-#define CRAQUELURE_CLUSTERS_H
+#pragma once
 
 #include "checkpoint/stream.h"
 #include "network/network.h"
@@ -73,5 +72,3 @@ int clusters_invasion_throat(struct clusters *clusters, int cluster);
 void clusters_state(struct clusters *clusters, struct checkpoint_stream *stream);
 
 void clusters_free(struct clusters *clusters);
-
-#endif

@@ -2,8 +2,7 @@
 // Liquid that gas leaves in a corner between two walls, and its flow along the corner.
 // The meniscus is an arc of radius r, which meets both walls at the contact angle. The
 // corner is HALF_ANGLE on either side of its bisector. Angles are in radians.
-#ifndef CRAQUELURE_CORNER_FILM_H
-#define CRAQUELURE_CORNER_FILM_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -24,5 +23,3 @@ double corner_resistance(double half_angle, double contact_angle);
 // surface tension / (viscosity L) times (r^3 - s^3): area / (3 beta). 0 where the
 // corner holds no film.
 double corner_conductance(double half_angle, double contact_angle);
-
-#endif

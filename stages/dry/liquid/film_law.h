@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Flow in the films that gas leaves in the corners of throats (corner_film.h), and the
 // radius of their menisci at a cluster.
-#ifndef CRAQUELURE_FILM_LAW_H
-#define CRAQUELURE_FILM_LAW_H
+#pragma once
 
 #include "dry/conditions.h"
 
@@ -37,5 +36,3 @@ double film_level(const struct film_law *law, double radius, double depth);
 // How many times as much as CONDUCTANCE / L (a - b) flows between places with levels a
 // and b, from their mean LEVEL and DEPTH; 1 without gravity.
 double film_flow_ratio(const struct film_law *law, double level, double depth);
-
-#endif

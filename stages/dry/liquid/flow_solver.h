@@ -3,8 +3,7 @@
 // its solvers. Potentials are liquid pressure plus weight, in the units of meniscus.h.
 // For the files of this folder only. Nothing here is in a checkpoint: it only saves
 // time, and is forgotten at moments that do not depend on checkpoints (resume.c).
-#ifndef CRAQUELURE_FLOW_SOLVER_H
-#define CRAQUELURE_FLOW_SOLVER_H
+#pragma once
 
 #include "cluster_laplacian.h"
 #include "cluster_members.h"
@@ -108,5 +107,3 @@ int first_throat(const struct flow_solver *solver,
 
 // Frees the cluster's graph, if it has one; its potentials are kept in the solver.
 void free_graph(struct flow_solver *solver, struct cluster_memory *memory);
-
-#endif

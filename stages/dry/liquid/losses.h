@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which throats of viscous liquid lose or gain it between two events, and how fast.
-#ifndef CRAQUELURE_LOSSES_H
-#define CRAQUELURE_LOSSES_H
+#pragma once
 
 #include "occupancy.h"
 #include "viscous.h"
@@ -38,5 +37,3 @@ void losses_sort(struct losses *losses);
 double liquid_section(const struct occupancy *occupancy, int throat);
 
 void losses_free(struct losses *losses);
-
-#endif

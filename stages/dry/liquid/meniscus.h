@@ -2,8 +2,7 @@
 // The pressure of the liquid at which gas enters a throat: that of the gas less the
 // capillary pressure 2 sigma cos(theta) / r. Under gravity the liquid's pressure rises
 // downwards, so lower throats are entered later.
-#ifndef CRAQUELURE_MENISCUS_H
-#define CRAQUELURE_MENISCUS_H
+#pragma once
 
 #include "dry/conditions.h"
 
@@ -39,5 +38,3 @@ double menisci_weight(const struct menisci *menisci, int throat, int node);
 void menisci_entry_priority(const struct menisci *menisci, double *entry_priority);
 
 void menisci_free(struct menisci *menisci);
-
-#endif

@@ -2,8 +2,7 @@
 // Where the liquid is: in the throats, in parts; in the nodes, all or nothing
 // [K 3.4.1]. It owns the vapour and the clusters, because both change with every throat
 // that empties, and only here: so the three cannot come to disagree.
-#ifndef CRAQUELURE_OCCUPANCY_H
-#define CRAQUELURE_OCCUPANCY_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "clusters.h"
@@ -84,5 +83,3 @@ double occupancy_saturation(const struct occupancy *occupancy, int throat);
 void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stream);
 
 void occupancy_free(struct occupancy *occupancy);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The liquid that throats leave as rings around contacts (network/contact_rings.h), and
 // the nodes from which it dries.
-#ifndef CRAQUELURE_RING_STORES_H
-#define CRAQUELURE_RING_STORES_H
+#pragma once
 
 #include "dry/conditions.h"
 #include "network/contact_rings.h"
@@ -24,5 +23,3 @@ enum status ring_stores_init(const struct network *network,
                              const struct drying_conditions *conditions, double length,
                              struct ring_stores *stores, struct reason *reason);
 void ring_stores_free(struct ring_stores *stores);
-
-#endif

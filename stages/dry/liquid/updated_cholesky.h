@@ -5,8 +5,7 @@
 // It is meant as a preconditioner: small errors accumulate in it, and arms are followed
 // only roughly. A link that changes is one column of an update; where many change at
 // once it is factorised again, which is cheaper then.
-#ifndef CRAQUELURE_UPDATED_CHOLESKY_H
-#define CRAQUELURE_UPDATED_CHOLESKY_H
+#pragma once
 
 #include "cluster_laplacian.h"
 
@@ -39,5 +38,3 @@ void updated_cholesky_solve(const struct updated_cholesky *factor, const double 
 
 // Four arrays (n) that a solver may use between calls.
 double **updated_cholesky_scratch(struct updated_cholesky *factor);
-
-#endif

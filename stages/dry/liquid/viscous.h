@@ -14,8 +14,7 @@
 // it has one solution. In each round all menisci that must stop do, and those begin to
 // move that fall short most. Either only raises pressures, so none changes back
 // (Hintermueller, Ito and Kunisch 2002 change all at once; most would stop again).
-#ifndef CRAQUELURE_VISCOUS_H
-#define CRAQUELURE_VISCOUS_H
+#pragma once
 
 #include "meniscus.h"
 #include "occupancy.h"
@@ -72,5 +71,3 @@ void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupa
 void liquid_flow_respond(struct liquid_flow *flow);
 
 void liquid_flow_free(struct liquid_flow *flow);
-
-#endif

@@ -3,12 +3,9 @@
 // each number lies in its bounds (checkpoint/stream.h); the run also relies on
 // relations between them: lists without repetition, counts, indices that point at each
 // other.
-#ifndef CRAQUELURE_DRY_CHECK_STATE_H
-#define CRAQUELURE_DRY_CHECK_STATE_H
+#pragma once
 
 #include "run.h"
 
 // Whether RUN, just restored, is consistent. O(network + history).
 bool run_fits(const struct run *run);
-
-#endif

@@ -23,8 +23,7 @@
 // up to it (profiles.c, network/drying_record.h). Conditions must be complete: names of
 // liquids are looked up before (dry/parameters.h). The same input gives the same bytes,
 // on any number of threads.
-#ifndef CRAQUELURE_DRYING_H
-#define CRAQUELURE_DRYING_H
+#pragma once
 
 #include "basics/status.h"
 #include "checkpoint/keeper.h"
@@ -118,5 +117,3 @@ enum status dry_network(const struct network *network,
 
 // Frees what the history owns and empties it; safe on an empty one.
 void drying_history_free(struct drying_history *history);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What films of finite resistance do, step by step, beside the history of the throats.
-#ifndef CRAQUELURE_FILM_HISTORY_H
-#define CRAQUELURE_FILM_HISTORY_H
+#pragma once
 
 #include "dry/inviscid/emptying_times.h"
 
@@ -26,5 +25,3 @@ void film_history_free(struct film_history *films);
 // occupancy scale it. O(n_node).
 void film_history_add(struct film_history *films, const struct emptying_times *times,
                       unsigned open_walls, double rate);
-
-#endif

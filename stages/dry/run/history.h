@@ -2,8 +2,7 @@
 // Records the run, step by step, in a struct drying_history (drying.h). Steps, events
 // and changes are three tables of different lengths; change_offset ties changes to
 // steps.
-#ifndef CRAQUELURE_HISTORY_H
-#define CRAQUELURE_HISTORY_H
+#pragma once
 
 #include "checkpoint/stream.h"
 #include "drying.h"
@@ -40,5 +39,3 @@ void recorder_set_last_rate(struct recorder *recorder, double rate);
 // resume.c keeps these.
 void recorder_state(struct recorder *recorder, int n_throat, int n_place,
                     struct checkpoint_stream *stream);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A network that holds less liquid at the start than it could.
-#ifndef CRAQUELURE_INITIAL_SATURATION_H
-#define CRAQUELURE_INITIAL_SATURATION_H
+#pragma once
 
 #include "dry/liquid/occupancy.h"
 #include "network/drying_record.h"
@@ -31,5 +30,3 @@ double *recorded_rings(const struct network *network,
 // (n_throat, each from 0 to 1), and the rings beside empty ones RINGS (n_node,
 // likewise; kept; NULL: 1).
 void start_from(struct occupancy *occupancy, const double *start, const double *rings);
-
-#endif

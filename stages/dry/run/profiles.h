@@ -2,8 +2,7 @@
 // The distribution of liquid at chosen saturations of the network, from the history of
 // a run: profiles over the depth [K Figs. 3.31b, 3.48b], saturation of the surface,
 // sizes of clusters, and snapshots of all throats.
-#ifndef CRAQUELURE_PROFILES_H
-#define CRAQUELURE_PROFILES_H
+#pragma once
 
 #include "drying.h"
 
@@ -29,5 +28,3 @@ struct profiles profiles_init(const struct network *network,
                               bool keep_throats);
 
 void profiles_free(struct profiles *profiles);
-
-#endif

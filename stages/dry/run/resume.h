@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Runs that may be stopped and continued, to the same bytes.
-#ifndef CRAQUELURE_DRY_RESUME_H
-#define CRAQUELURE_DRY_RESUME_H
+#pragma once
 
 #include "run.h"
 
@@ -14,5 +13,3 @@ void keep_if_due(struct run *run, const struct keeper *keeper);
 // KEPT. STATUS_BAD_DATA: KEPT is not of such a run.
 enum status go_on_from(struct run *run, const struct kept_state *kept,
                        struct reason *reason);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What becomes of the rings that throats leave, beside the history of the throats.
-#ifndef CRAQUELURE_RING_HISTORY_H
-#define CRAQUELURE_RING_HISTORY_H
+#pragma once
 
 #include "dry/liquid/ring_stores.h"
 #include "drying.h"
@@ -32,5 +31,3 @@ struct ring_history {
 void ring_history_take(struct drying_history *history, const struct network *network,
                        const struct ring_stores *stores, double length);
 void ring_history_free(struct ring_history *rings);
-
-#endif

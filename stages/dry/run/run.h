@@ -7,8 +7,7 @@
 // first that has emptied (or filled, or changed by saturation_step), gas into what has
 // emptied, the record. Which of the three steps does it depends on the conditions
 // alone: Kelvin first, else viscous, else inviscid or immobile.
-#ifndef CRAQUELURE_RUN_H
-#define CRAQUELURE_RUN_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "dry/conditions.h"
@@ -119,5 +118,3 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason);
 enum status drying_step_inviscid(struct run *run, struct reason *reason);
 enum status drying_step_viscous(struct run *run, struct reason *reason);
 enum status drying_step_kelvin(struct run *run, struct reason *reason);
-
-#endif

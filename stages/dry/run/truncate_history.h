@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A drying that ends before the last throat has emptied.
-#ifndef CRAQUELURE_DRY_STOP_H
-#define CRAQUELURE_DRY_STOP_H
+#pragma once
 
 #include "drying.h"
 
@@ -11,5 +10,3 @@
 // after it. O(n_change).
 void truncate_history(struct drying_history *history, const struct network *network,
                       double saturation);
-
-#endif

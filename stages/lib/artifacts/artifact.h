@@ -21,8 +21,7 @@
 //
 // For one thread: HDF5 is not to be called from several. Several artifacts may be open
 // at once. The same datasets, put in the same order, give the same bytes.
-#ifndef CRAQUELURE_ARTIFACT_H
-#define CRAQUELURE_ARTIFACT_H
+#pragma once
 
 #include "artifacts/schema.h"
 #include "basics/file.h"
@@ -216,5 +215,3 @@ json_t *one_input(const struct artifact *input);
 // digests are INPUTS (taken over), writes it, and frees it.
 void finish_json(json_t *document, const struct invocation *invocation, json_t *inputs,
                  const char *model);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The sizes that costs are foreseen from, of an input or of a number of grains.
-#ifndef CRAQUELURE_ARTIFACT_BODY_SIZE_H
-#define CRAQUELURE_ARTIFACT_BODY_SIZE_H
+#pragma once
 
 #include "costs/costs.h"
 #include "parameters/stage.h"
@@ -11,5 +10,3 @@
 // 0: as if one were open. Opens and checks the input as any stage does, so --estimate
 // refuses what a run would refuse.
 struct body_size input_size(const struct invocation *invocation, unsigned open_walls);
-
-#endif

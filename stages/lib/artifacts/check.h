@@ -5,8 +5,7 @@
 // Both go before any getter (artifact.h): these trust that extents fit into an int and
 // that every value has the type that the schema says. Neither prints nor ends the
 // program, so that read.c can name the file and write.c can blame whoever is to blame.
-#ifndef CRAQUELURE_CHECK_H
-#define CRAQUELURE_CHECK_H
+#pragma once
 
 #include "artifacts/schema.h"
 #include "basics/status.h"
@@ -25,5 +24,3 @@ enum status check_links(hid_t file, struct reason *reason);
 // too large. Reads each dataset once, in blocks. O(values), in memory O(1).
 enum status check_file(hid_t file, const struct schema *schema, size_t image_size,
                        struct reason *reason);
-
-#endif

@@ -11,8 +11,7 @@
 // A run begins from keeper.begin where that is not NULL. The file is of one run:
 // SHA-256 over all its arrays tells damage, and program, parameters and inputs must be
 // those of this call, as canonical JSON.
-#ifndef CRAQUELURE_CHECKPOINT_H
-#define CRAQUELURE_CHECKPOINT_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "checkpoint/keeper.h"
@@ -49,5 +48,3 @@ void checkpoint_begin(struct checkpoint *checkpoint, struct invocation *invocati
 // After the output is written: removes the file. Frees what begin read; without
 // --checkpoint does nothing. What cannot be removed is reported, no more.
 void checkpoint_end(struct checkpoint *checkpoint);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bonds that broke, as a response or a motion has them: those of /cracks, and those
 // that were broken when it began.
-#ifndef CRAQUELURE_ARTIFACT_CRACKS_H
-#define CRAQUELURE_ARTIFACT_CRACKS_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -29,5 +28,3 @@ struct cracks artifact_get_cracks(const struct artifact *artifact);
 
 // Frees the arrays and empties CRACKS; safe on an empty one.
 void cracks_free(struct cracks *cracks);
-
-#endif

@@ -5,8 +5,7 @@
 // Used by stages whose result is small and meant for other programs to read as it is
 // (rings, bridge, crackstats, check), and by those that read any artifact (inspect,
 // artdiff, report). finish_json (artifact.h) adds the provenance.
-#ifndef CRAQUELURE_DOCUMENT_H
-#define CRAQUELURE_DOCUMENT_H
+#pragma once
 
 #include "artifacts/schema.h"
 #include "basics/file.h"
@@ -34,5 +33,3 @@ enum status check_document(const json_t *document, const struct schema *schema,
 // Writes DOCUMENT to PATH ("-": standard output), whole or not at all, with a line for
 // every value and numbers in 17 digits, and frees it. Exits 73 or 74.
 void write_json(const char *path, json_t *document);
-
-#endif

@@ -2,8 +2,7 @@
 // The liquid in an artifact, attributes of the group /liquid: what the drying was told
 // goes along to the stages behind it, so that a user says it once. Each attribute may
 // be missing.
-#ifndef CRAQUELURE_ARTIFACT_LIQUID_H
-#define CRAQUELURE_ARTIFACT_LIQUID_H
+#pragma once
 
 #include "artifacts/artifact.h"
 #include "parameters/conditions.h"
@@ -47,5 +46,3 @@ void liquid_complete(struct liquid_properties *told,
 bool liquid_differs(const struct liquid_properties *told,
                     const struct liquid_properties *has, const char *name, char *text,
                     size_t size);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains from a file, whatever kind it is.
-#ifndef CRAQUELURE_READ_GRAINS_H
-#define CRAQUELURE_READ_GRAINS_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -24,5 +23,3 @@ void convert_grains(struct packing *packing, double by, bool diameters, bool has
 // Exits 65 where radii are 1000 times too large for the places, or more: each grain
 // would overlap with all others.
 void refuse_large_radii(const struct packing *packing, const char *path);
-
-#endif

@@ -9,8 +9,7 @@
 //      "units": "m", "minimum": 0, "text": "radius of the cylinder"}
 // A new dataset is a line there, one where it is put and one where it is read; the
 // check of every artifact goes by the same text.
-#ifndef CRAQUELURE_SCHEMA_H
-#define CRAQUELURE_SCHEMA_H
+#pragma once
 
 #include <hdf5.h>
 #include <jansson.h>
@@ -41,5 +40,3 @@ bool has_entry(hid_t file, const json_t *entry);
 // owns both: they are not to be closed.
 hid_t entry_file_type(const json_t *entry);
 hid_t entry_memory_type(const json_t *entry);
-
-#endif

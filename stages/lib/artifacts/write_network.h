@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Network artifacts as stages that make or change networks write them.
-#ifndef CRAQUELURE_WRITE_NETWORK_H
-#define CRAQUELURE_WRITE_NETWORK_H
+#pragma once
 
 #include "artifacts/artifact.h"
 
@@ -21,5 +20,3 @@ void write_network_of(const struct network *network,
 // What they put into a network artifact, for who puts in more: datasets, summary and
 // ParaView view. The caller creates ARTIFACT and finishes it.
 void put_network_with_summary(struct artifact *artifact, const struct network *network);
-
-#endif

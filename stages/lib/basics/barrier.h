@@ -2,8 +2,7 @@
 // Where threads wait for each other, many times in a thousandth of a second. OpenMP's
 // barrier burns the core that the one waited for may need: beside other programs two
 // threads were slower than one by it. This one soon lets others go first.
-#ifndef CRAQUELURE_BARRIER_H
-#define CRAQUELURE_BARRIER_H
+#pragma once
 
 #include <sched.h>
 #include <stdatomic.h>
@@ -35,5 +34,3 @@ static inline void barrier_wait(struct barrier *barrier)
     for (int look = 0; atomic_load(&barrier->round) == round; look++)
         if (look >= PATIENCE) sched_yield();
 }
-
-#endif

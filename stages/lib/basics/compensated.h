@@ -10,8 +10,7 @@
 // pores that are nearly equal). A residual can be a double: it is computed anew.
 // A sum takes two numbers, and about four operations more for each term. Threads must
 // not share one.
-#ifndef CRAQUELURE_COMPENSATED_H
-#define CRAQUELURE_COMPENSATED_H
+#pragma once
 
 #include <math.h>
 
@@ -43,5 +42,3 @@ static inline double compensated_difference(struct compensated a, struct compens
 {
     return (a.value - b.value) + (a.lost - b.lost);
 }
-
-#endif

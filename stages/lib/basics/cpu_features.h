@@ -2,8 +2,7 @@
 // Whether the processor has the vectors of eight numbers that *_avx512.c are compiled
 // for. False on other processors, which take the files for AVX2 or plain C: the digits
 // are the same.
-#ifndef CRAQUELURE_CPU_FEATURES_H
-#define CRAQUELURE_CPU_FEATURES_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -19,5 +18,3 @@ static inline bool has_avx512(void)
     return false;
 #endif
 }
-
-#endif

@@ -4,8 +4,7 @@
 // on the order in which sets are united. Nearly O(1) a call. An array of n ints is all
 // there is; whoever allocates it frees it. Not for several threads at once: looking for
 // a root changes the array.
-#ifndef CRAQUELURE_DISJOINT_SETS_H
-#define CRAQUELURE_DISJOINT_SETS_H
+#pragma once
 
 // The root of I's set, with the way there made half as long. Path halving: every second
 // entry on the way comes to point to its grandparent.
@@ -28,5 +27,3 @@ static inline void unite_sets(int *parent, int a, int b)
     else
         parent[a] = b;
 }
-
-#endif

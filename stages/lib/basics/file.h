@@ -5,8 +5,7 @@
 // the new one, whatever ends the program. All functions end the program with one line
 // and the status named, so that no caller needs a branch for a full disk. Paths are
 // used as given: "-" is a stream only where it says so.
-#ifndef CRAQUELURE_FILE_H
-#define CRAQUELURE_FILE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -67,5 +66,3 @@ void sha256(const void *data, size_t size, char digest[65]);
 
 // The name to use in messages. PATH itself or a static text.
 const char *input_name(const char *path);
-
-#endif

@@ -2,8 +2,7 @@
 // Allocation that cannot fail quietly: out of memory ends the program with one line and
 // status 70. Everything returned is freed with free(). A program that runs out of
 // memory cannot go on usefully, and no caller needs a branch that no test can reach.
-#ifndef CRAQUELURE_MEMORY_H
-#define CRAQUELURE_MEMORY_H
+#pragma once
 
 #include <stddef.h>
 
@@ -55,5 +54,3 @@ void *duplicate(const void *source, size_t count, size_t size)
             (array) = reallocate((array), (size_t)(capacity), sizeof *(array));        \
         }                                                                              \
     } while (0)
-
-#endif

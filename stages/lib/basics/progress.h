@@ -4,8 +4,7 @@
 // A stage calls _begin once, _update as often as it likes, _end before it prints
 // anything. It reads the clock, so it must not decide anything in the computation. For
 // one thread.
-#ifndef CRAQUELURE_PROGRESS_H
-#define CRAQUELURE_PROGRESS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -39,5 +38,3 @@ double progress_time_left(double elapsed, double fraction, double left, double s
 
 // Clears the line if there is one; the caller may print then.
 void progress_end(struct progress *progress);
-
-#endif

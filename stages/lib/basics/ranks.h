@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Falling order of many numbers (network/entry_order.h says what gas enters when). And
 // a queue of ranks.
-#ifndef CRAQUELURE_RANKS_H
-#define CRAQUELURE_RANKS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -31,5 +30,3 @@ void rank_queue_add(struct rank_queue *queue, int rank);
 int rank_queue_take(struct rank_queue *queue);
 
 void rank_queue_free(struct rank_queue *queue);
-
-#endif

@@ -26,8 +26,7 @@
 // work that changes nothing. Functions with vectors as arguments must be inlined
 // (SIMD_INLINE): how such arguments are passed depends on what a file is compiled for.
 // A maskw of one file means nothing in another.
-#ifndef CRAQUELURE_SIMD_H
-#define CRAQUELURE_SIMD_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -309,6 +308,4 @@ SIMD_INLINE doublew choose(maskw m, doublew a, doublew b)
     return (doublew)((m & (maskw)a) | (~m & (maskw)b));
 #endif
 }
-#endif
-
 #endif

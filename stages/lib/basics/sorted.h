@@ -3,8 +3,7 @@
 // Equal numbers have no order here: qsort may leave them in any, so what carries more
 // than the number needs a comparison of its own with a tie broken by index, or its
 // bytes would depend on the C library.
-#ifndef CRAQUELURE_SORTED_H
-#define CRAQUELURE_SORTED_H
+#pragma once
 
 #include <string.h>
 
@@ -42,5 +41,3 @@ static inline int first_not_below(const int *sorted, int n, int wanted)
     }
     return low;
 }
-
-#endif

@@ -10,8 +10,7 @@
 // and there: if (status) die(status, "%s", reason.text). The reason says the dataset or
 // key, the row, the rule, the value and what to do; die puts the program's name before
 // it. Only 0 is success. The numbers are those of sysexits.h, but for 1 and 3.
-#ifndef CRAQUELURE_STATUS_H
-#define CRAQUELURE_STATUS_H
+#pragma once
 
 enum status {
     STATUS_OK = 0,
@@ -42,5 +41,3 @@ _Noreturn void die(enum status status, const char *format, ...)
 
 // Prints "PROGRAM: line" on stderr and goes on.
 void report(const char *format, ...) __attribute__((format(printf, 1, 2)));
-
-#endif

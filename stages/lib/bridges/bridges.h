@@ -17,8 +17,7 @@
 // a table (bridges/table.h, ratios.h) for many of one angle, as good once it is made; a
 // fit where a paper is to be repeated. Functions here are pure: any number of threads,
 // the same digits.
-#ifndef CRAQUELURE_BRIDGES_H
-#define CRAQUELURE_BRIDGES_H
+#pragma once
 
 #include "basics/status.h"
 #include "bridges/meridian.h"
@@ -128,5 +127,3 @@ enum status bridge_at_suction(const struct bridge *bridge, double separation,
 // at least 2, evenly along it. Both (COUNT), in m.
 void bridge_profile(const struct bridge *bridge, const struct bridge_state *state,
                     int count, double *height, double *radius);
-
-#endif

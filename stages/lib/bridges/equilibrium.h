@@ -8,8 +8,7 @@
 // exist and are not stable. Between equal bodies a second family, without mirror
 // symmetry, may take over before. Functions at a volume start from contact and follow
 // the branch, so many bridges cost less together (follow_to_turning).
-#ifndef CRAQUELURE_EQUILIBRIUM_H
-#define CRAQUELURE_EQUILIBRIUM_H
+#pragma once
 
 #include "basics/status.h"
 #include "bridges/meridian.h"
@@ -52,5 +51,3 @@ enum status find_at_curvature(const struct bodies *bodies, double curvature, dou
 // stable.
 enum status follow_to_turning(const struct bodies *bodies, double volume, int count,
                               const double *gap, struct equilibrium *found);
-
-#endif

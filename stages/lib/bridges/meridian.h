@@ -10,8 +10,7 @@
 // for every shape: nodoid, catenoid (H = 0), unduloid, cylinder and sphere. Only height
 // and volume are integrals. Nothing here is singular at H = 0, on a plane, or for the
 // cylinder.
-#ifndef CRAQUELURE_MERIDIAN_H
-#define CRAQUELURE_MERIDIAN_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -79,5 +78,3 @@ struct overlap {
     double volume, radius_squared;
 };
 struct overlap bodies_overlap(const struct bodies *bodies, double gap);
-
-#endif

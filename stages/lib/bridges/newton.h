@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The four equations of a bridge and Newton's method on them; for equilibrium.c only.
-#ifndef CRAQUELURE_BRIDGES_NEWTON_H
-#define CRAQUELURE_BRIDGES_NEWTON_H
+#pragma once
 
 #include "bridges/meridian.h"
 
@@ -62,5 +61,3 @@ bool converge(const struct problem *problem, struct unknowns *unknowns, int *cou
 // The arc that these unknowns stand for; and back.
 struct arc arc_of(const struct unknowns *unknowns);
 struct unknowns unknowns_of(const struct arc *arc);
-
-#endif

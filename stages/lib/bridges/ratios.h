@@ -12,8 +12,7 @@
 //
 // Made once for the sizes of a scene, then asked for as many forces as wanted by any
 // number of threads: nothing in it changes.
-#ifndef CRAQUELURE_BRIDGE_RATIOS_H
-#define CRAQUELURE_BRIDGE_RATIOS_H
+#pragma once
 
 #include "basics/status.h"
 
@@ -54,5 +53,3 @@ void bridge_ratios_forces(const struct bridge_ratios *ratios, int count,
 // The gap at which a bridge ruptures; it is longest between equal grains.
 double bridge_ratios_rupture(const struct bridge_ratios *ratios, double asymmetry,
                              double volume);
-
-#endif

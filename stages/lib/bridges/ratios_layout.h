@@ -10,8 +10,7 @@
 // slightly unequal ones come near to.
 //
 // Their patches are halves of octaves, of sixth order in the volume.
-#ifndef CRAQUELURE_BRIDGE_RATIOS_LAYOUT_H
-#define CRAQUELURE_BRIDGE_RATIOS_LAYOUT_H
+#pragma once
 
 #include "bridges/ratios.h"
 #include "bridges/table_layout.h"
@@ -53,5 +52,3 @@ static inline double u_in_half(struct volume_place at)
 {
     return (2 * (at.patch % IN_HALF) + at.u + 1) / IN_HALF - 1;
 }
-
-#endif

@@ -6,8 +6,7 @@
 // So equal grains of all sizes share a table, and so do grain and plane; pairs of other
 // ratios need tables of their own, or ratios.h. Once it is made it is only read, by any
 // number of threads.
-#ifndef CRAQUELURE_BRIDGE_TABLE_H
-#define CRAQUELURE_BRIDGE_TABLE_H
+#pragma once
 
 #include "basics/status.h"
 
@@ -49,5 +48,3 @@ void bridge_table_forces(const struct bridge_table *table, int count,
 // The gap at which VOLUME ruptures, to a relative 1e-9, or where symmetry breaks first
 // 1e-5; both in effective radii.
 double bridge_table_rupture(const struct bridge_table *table, double volume);
-
-#endif

@@ -20,8 +20,7 @@
 // A table takes VOLUMES * PLACES * 64 bytes for the coefficients, a megabyte; they are
 // floats, because the error of interpolation (bridge_table_error) is above theirs. One
 // force reads two lines of the cache: a volume_patch and a pair of float8.
-#ifndef CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
-#define CRAQUELURE_BRIDGE_TABLE_LAYOUT_H
+#pragma once
 
 #include "basics/simd.h"
 #include "bridges/table.h"
@@ -153,5 +152,3 @@ static inline struct place place_of(const struct bridge_table *table, double vol
     return (struct place){at.patch, place, (float)at.u, (float)(2 * (x - place) - 1),
                           ruptured ? 0 : shrink * shrink};
 }
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What tables are made of, from exact solutions; for the files that make them.
-#ifndef CRAQUELURE_BRIDGE_TABLE_MAKE_H
-#define CRAQUELURE_BRIDGE_TABLE_MAKE_H
+#pragma once
 
 #include "bridges/equilibrium.h"
 #include "bridges/table_layout.h"
@@ -31,5 +30,3 @@ void fit_place(int volumes, const double value[][SAMPLES], size_t place, float8 
 // STATUS_NOT_CONVERGED.
 enum status fill_patch(const struct bodies *bodies, int patch,
                        struct bridge_table *table);
-
-#endif

@@ -12,8 +12,7 @@
 // A state may only be kept where a run in one piece and one that went on from it do the
 // same from there. What an engine holds for speed alone (factors, lists) must therefore
 // be dropped at moments that do not depend on the keeper, or be part of the state.
-#ifndef CRAQUELURE_CHECKPOINT_KEEPER_H
-#define CRAQUELURE_CHECKPOINT_KEEPER_H
+#pragma once
 
 #include "checkpoint/named_arrays.h"
 
@@ -37,5 +36,3 @@ void free_kept_state(struct kept_state *stream);
 // Whether it is time to keep the state; never with NULL. Reads a clock: to be asked
 // some times a second, not in inner loops.
 bool is_due(const struct keeper *keeper);
-
-#endif

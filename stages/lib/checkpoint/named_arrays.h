@@ -9,8 +9,7 @@
 //     if (reader.failed) return STATUS_BAD_DATA;
 // A file may have been changed by anyone, so ranges are those outside of which a number
 // could lead the program outside of its arrays. For one thread.
-#ifndef CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
-#define CRAQUELURE_CHECKPOINT_NAMED_ARRAYS_H
+#pragma once
 
 #include "basics/status.h"
 
@@ -77,5 +76,3 @@ struct array_reader {
 // They stay the list's. REASON then has the first failure, not the last.
 const void *read_array(struct array_reader *reader, const char *name,
                        enum array_type type, int64_t count, double least, double most);
-
-#endif

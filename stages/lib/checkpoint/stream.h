@@ -16,8 +16,7 @@
 //     }
 // The count goes first, as what follows is read by it. Bounds of indices may use counts
 // that have been passed already, so an index that was read never leaves its array.
-#ifndef CRAQUELURE_CHECKPOINT_STREAM_H
-#define CRAQUELURE_CHECKPOINT_STREAM_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "checkpoint/named_arrays.h"
@@ -81,5 +80,3 @@ bool stream_is_whole(const struct checkpoint_stream *stream);
 
 // Frees what was written; what is read belongs to the list.
 void stream_free(struct checkpoint_stream *stream);
-
-#endif

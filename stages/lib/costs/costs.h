@@ -2,8 +2,7 @@
 // What a stage takes: seconds of one core, memory and disk, foreseen from the sizes of
 // what it works on and from constants that were measured on one machine (costs.c). Pure
 // functions.
-#ifndef CRAQUELURE_COSTS_H
-#define CRAQUELURE_COSTS_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -87,5 +86,3 @@ struct motion_size {
     bool turns, wet;            // friction, bonds or rolling; liquid bridges
 };
 struct cost cost_of_motion(const struct motion_size *motion);
-
-#endif

@@ -41,8 +41,7 @@
 //     if (!status) status = dem_run_until(dem, 1e-4, 1000000, &reason);
 //     if (!status) dem_positions(dem, position);
 //     dem_free(dem);
-#ifndef CRAQUELURE_DEM_H
-#define CRAQUELURE_DEM_H
+#pragma once
 
 #include "basics/status.h"
 #include "bridges/bridges.h"
@@ -463,5 +462,3 @@ struct named_array *dem_save(const struct dem *dem, int *count);
 // freed.
 enum status dem_restore(struct dem *dem, const struct named_array *array, int count,
                         struct reason *reason);
-
-#endif

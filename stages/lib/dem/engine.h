@@ -29,8 +29,7 @@
 // finishes; counts of bridges are atomic; all else is written by the first thread while
 // the others wait at a barrier (dem.c). Functions here without a word on threads are
 // for one thread.
-#ifndef CRAQUELURE_DEM_ENGINE_H
-#define CRAQUELURE_DEM_ENGINE_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "bridges/table.h"
@@ -624,5 +623,3 @@ struct pair_geometry {
 };
 // In plain C and scaled; for whatever looks at pairs outside of the sweep.
 struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back);
-
-#endif

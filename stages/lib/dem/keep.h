@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a long run of discrete elements keeps its state at intervals.
-#ifndef CRAQUELURE_DEM_KEEP_H
-#define CRAQUELURE_DEM_KEEP_H
+#pragma once
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
@@ -18,5 +17,3 @@ void keep_state(const struct keeper *keeper, const struct dem *dem,
 // Where a run is cut makes no difference to its results. 1 + 1e6 / (1 + n_particle), at
 // least 1.
 int64_t cycles_between_questions(int n_particle);
-
-#endif

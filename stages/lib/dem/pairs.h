@@ -11,8 +11,7 @@
 // its own 40; a bond 96; a bridge 40; rolling 40; the ledger of energy 32. Of a group
 // that does nothing, a cycle reads the places of its pairs and the records of their
 // grains, no more.
-#ifndef CRAQUELURE_DEM_PAIRS_H
-#define CRAQUELURE_DEM_PAIRS_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -192,5 +191,3 @@ void free_pairs(struct pair_list *pairs);
 // not of groups. Both lists have the same kinds of arrays, being of one engine.
 void carry_over(struct pair_list *new, int new_pair, const struct pair_list *old,
                 int old_pair, bool swapped);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The state of the discrete elements as named columns, and where each lies in memory.
-#ifndef CRAQUELURE_STATE_COLUMNS_H
-#define CRAQUELURE_STATE_COLUMNS_H
+#pragma once
 
 #include "dem/engine.h"
 
@@ -32,5 +31,3 @@ struct column_list list_columns(struct dem *dem);
 // Address of number K of row ROW. K counts from 0 to width - 1. Of the type of the
 // column. Not checked: ROW and K must be in range.
 char *column_address(const struct column *column, int64_t row, int k);
-
-#endif

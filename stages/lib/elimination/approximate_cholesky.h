@@ -3,8 +3,7 @@
 // S. Sachdeva, Approximate Gaussian elimination for Laplacians, FOCS 2016; as in Gao,
 // Kyng, Spielman, Robust and practical solution of Laplacian equations by approximate
 // elimination, 2023).
-#ifndef CRAQUELURE_APPROXIMATE_CHOLESKY_H
-#define CRAQUELURE_APPROXIMATE_CHOLESKY_H
+#pragma once
 
 #include "conductance_matrix.h"
 
@@ -35,5 +34,3 @@ void approximate_cholesky_extend(struct approximate_cholesky *factor,
 // X (n) = (L D L')^-1 B (n), in single precision; no site is kept.
 void approximate_cholesky_apply(struct approximate_cholesky *factor, const double *b,
                                 double *x);
-
-#endif

@@ -4,8 +4,7 @@
 // links throats. With x the potentials (pressures) row i says that the flows sum_k
 // value_k (x_column(k) - x_i) balance what is given. All conductances are in one unit,
 // potentials in one, flows in their product.
-#ifndef CRAQUELURE_CONDUCTANCE_MATRIX_H
-#define CRAQUELURE_CONDUCTANCE_MATRIX_H
+#pragma once
 
 #include "basics/compensated.h"
 
@@ -44,5 +43,3 @@ void conductance_matrix_residual(const struct conductance_matrix *matrix,
 // the diagonal times X cancels where X is nearly constant.
 void conductance_matrix_multiply(const struct conductance_matrix *matrix,
                                  const double *x, double *result);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Symmetric matrices without their diagonals, with entries >= 0, that gain products of
 // rows with themselves (rank-one updates).
-#ifndef CRAQUELURE_DENSE_FRONT_H
-#define CRAQUELURE_DENSE_FRONT_H
+#pragma once
 
 #include "checkpoint/stream.h"
 
@@ -136,5 +135,3 @@ dense_front_pass dense_front_pass_avx2_double, dense_front_pass_avx512_double;
 dense_front_pass dense_front_pass_avx2_float, dense_front_pass_avx512_float;
 dense_front_gather dense_front_gather_avx2_double, dense_front_gather_avx512_double;
 dense_front_gather dense_front_gather_avx2_float, dense_front_gather_avx512_float;
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A weighted graph from which vertices are eliminated one by one. Each vertex holds its
 // edges in a row; now and then the rest is compacted.
-#ifndef CRAQUELURE_ELIMINATION_GRAPH_H
-#define CRAQUELURE_ELIMINATION_GRAPH_H
+#pragma once
 
 #include "conductance_matrix.h"
 
@@ -57,5 +56,3 @@ void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
 // Drops the eliminated vertices; the others are renumbered in the same order. INDEX
 // follows.
 void elimination_graph_compact(struct elimination_graph *graph);
-
-#endif

@@ -8,8 +8,7 @@
 // every conductance, potential and flow keeps its digits whatever the range of
 // conductances (Grassmann, Taksar and Heyman 1985): digits are lost only where the
 // given potentials, or opposite flows to one place, cancel in their own differences.
-#ifndef CRAQUELURE_KRON_H
-#define CRAQUELURE_KRON_H
+#pragma once
 
 struct kron_row;
 
@@ -49,5 +48,3 @@ void kron_potentials(const struct kron *kron, double *potential);
 
 // What it owns; it is {0} then.
 void kron_free(struct kron *kron);
-
-#endif

@@ -10,8 +10,7 @@
 // such a front is stored as a dense triangle. A site may be on several fronts, which
 // are merged when it is eliminated (the multifrontal method, in an order that is given
 // as it goes).
-#ifndef CRAQUELURE_KRON_FRONTS_H
-#define CRAQUELURE_KRON_FRONTS_H
+#pragma once
 
 #include "basics/compensated.h"
 #include "checkpoint/stream.h"
@@ -102,5 +101,3 @@ void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *str
 bool kron_fronts_fit(const struct kron_fronts *fronts);
 
 void kron_fronts_free(struct kron_fronts *fronts);
-
-#endif

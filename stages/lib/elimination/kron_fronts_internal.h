@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What fronts are made of; for kron_fronts*.c only.
-#ifndef CRAQUELURE_KRON_FRONTS_INTERNAL_H
-#define CRAQUELURE_KRON_FRONTS_INTERNAL_H
+#pragma once
 
 #include "dense_front.h"
 #include "kron_fronts.h"
@@ -41,5 +40,3 @@ void air_find_places(struct front *front);
 void air_lower(struct kron_fronts *fronts, double drop);
 void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
 void air_free(struct kron_fronts *fronts);
-
-#endif

@@ -21,8 +21,7 @@
 // A value is NAN rather than wrong: each correlation ends where its source ends. To add
 // a liquid, add it to the enum, to FLUID_CHOICES in the same order, and a row to the
 // table of fluids.c; docs/fluids.md compares it with other sources.
-#ifndef CRAQUELURE_FLUIDS_H
-#define CRAQUELURE_FLUIDS_H
+#pragma once
 
 #include "basics/status.h"
 
@@ -71,5 +70,3 @@ double fluid_value(enum fluid fluid, enum fluid_property property, double temper
 // Kinematic viscosity of dry air, m2/s, at a pressure in Pa above 0 (ideal gas); NAN
 // but from 200 to 600 K.
 double air_viscosity(double temperature, double pressure);
-
-#endif

@@ -3,12 +3,9 @@
 // releases), each of a temperature in K. Density and viscosity are those at 0.1 MPa.
 // The range is not checked here: fluid_value does. Other liquids are in fluids.h, which
 // calls this for water.
-#ifndef CRAQUELURE_WATER_H
-#define CRAQUELURE_WATER_H
+#pragma once
 
 double water_saturation_pressure(double temperature); // Pa
 double water_surface_tension(double temperature);     // N/m
 double water_density(double temperature);             // kg/m3
 double water_dynamic_viscosity(double temperature);   // Pa s
-
-#endif

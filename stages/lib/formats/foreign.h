@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Networks that come from elsewhere: what every reader of them checks and fills in.
-#ifndef CRAQUELURE_FOREIGN_H
-#define CRAQUELURE_FOREIGN_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -26,5 +25,3 @@ void find_walls(struct network *network);
 
 // Frees throat_volume where all volumes are those of the cylinders to the last digit.
 void drop_cylinder_volumes(struct network *network);
-
-#endif

@@ -5,8 +5,7 @@
 // TEXT is only read, and need not end with a null. Numbers are taken as they stand:
 // metres, radii and so on are for read_grains and convert_grains
 // (artifacts/read_grains.h), which stages call.
-#ifndef CRAQUELURE_GRAINS_H
-#define CRAQUELURE_GRAINS_H
+#pragma once
 
 #include "basics/file.h"
 #include "basics/status.h"
@@ -34,5 +33,3 @@ bool is_lammps(const struct bytes *text);
 // success the caller frees *PACKING.
 enum status import_lammps(const struct bytes *text, int64_t frame,
                           struct packing *packing, struct reason *reason);
-
-#endif

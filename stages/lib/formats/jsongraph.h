@@ -7,8 +7,7 @@
 // Metadata may hold more. We add link_radius, link_volume, link_kind and node_walls,
 // and all that is not a graph (box, grains, bonds, faces) as graph.metadata.craquelure,
 // so that a network comes back as it was.
-#ifndef CRAQUELURE_JSONGRAPH_H
-#define CRAQUELURE_JSONGRAPH_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -24,5 +23,3 @@ json_t *jsongraph_from_network(const struct network *network);
 // in the box around its nodes.
 enum status network_from_jsongraph(const json_t *document, struct network *network,
                                    struct reason *reason);
-
-#endif

@@ -11,8 +11,7 @@
 //                       clay
 // A network keeps its nodes and throats with radii, lengths and volumes. The format
 // has no place for grains, faces, and throats' kinds; the box begins at the origin.
-#ifndef CRAQUELURE_STATOIL_H
-#define CRAQUELURE_STATOIL_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -30,5 +29,3 @@ void statoil_from_network(const struct network *network, char *text[STATOIL_FILE
 // STATUS_BAD_DATA: names the file's ending and the line.
 enum status network_from_statoil(const char *const text[STATOIL_FILES],
                                  struct network *network, struct reason *reason);
-
-#endif

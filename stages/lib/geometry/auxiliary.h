@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Auxiliary grains only give the boundary layer its nodes: they are left out of what is
 // written, and measured.
-#ifndef CRAQUELURE_AUXILIARY_H
-#define CRAQUELURE_AUXILIARY_H
+#pragma once
 
 #include "geometry/porosity.h"
 
@@ -20,5 +19,3 @@ void copy_without_auxiliary(const struct packing *packing, const void *from,
 // The box of PACKING without the layers of auxiliary grains along its sides: these
 // sides are where the other grains end, m. O(n_particle).
 struct window box_without_auxiliary(const struct packing *packing);
-
-#endif

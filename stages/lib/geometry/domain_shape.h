@@ -2,8 +2,7 @@
 // Convex bodies that grains lie in or around: what bounds them besides a box. All
 // lengths in m. Nothing here knows of periodic boxes: body_near (packing.h) gives the
 // repetition of a body that a place has to do with.
-#ifndef CRAQUELURE_BODY_H
-#define CRAQUELURE_BODY_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -54,5 +53,3 @@ struct vector body_nearest(const struct body *body, struct vector x);
 // The nearest point of the round side alone, which goes on beyond the ends of a
 // cylinder or disc; for a box that of its surface.
 struct vector body_nearest_round(const struct body *body, struct vector x);
-
-#endif

@@ -2,8 +2,7 @@
 // How the grains of a packing hold one another. Contacts are always those of
 // find_contacts for the same packing; directions take the nearest image where the box
 // repeats.
-#ifndef CRAQUELURE_FABRIC_H
-#define CRAQUELURE_FABRIC_H
+#pragma once
 
 #include "geometry/porosity.h"
 
@@ -51,5 +50,3 @@ double fabric_deviator(const double fabric[9], bool flat);
 // flat packing isotropic is even over the angle, else over its cosine.
 void contact_inclination(const struct packing *packing, const struct contacts *contacts,
                          int count, double *density);
-
-#endif

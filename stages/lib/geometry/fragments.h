@@ -8,8 +8,7 @@
 //     fragments_end(&fragments, fixed, NULL);
 // Then of[i] == of[j] tells whether i and j are in one piece, in any order of the
 // bonds. `of` means nothing between begin and end.
-#ifndef CRAQUELURE_FRAGMENTS_H
-#define CRAQUELURE_FRAGMENTS_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -35,5 +34,3 @@ void fragments_join(struct fragments *fragments, int grain, int other);
 // count.
 void fragments_end(struct fragments *fragments, const uint8_t *fixed,
                    const bool *is_gone);
-
-#endif

@@ -4,8 +4,7 @@
 // from B, A lies in the opposite one. Sums of images that are not far stay within
 // int8_t; whether they are not far again, is_far says. Why not positions outside of the
 // box: an image is exact, so a network across a side closes on itself without rounding.
-#ifndef CRAQUELURE_IMAGE_H
-#define CRAQUELURE_IMAGE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -71,5 +70,3 @@ static inline struct image numbered_image(int32_t number)
                            (int8_t)(number / STEP % STEP - FARTHEST_IMAGE),
                            (int8_t)(number % STEP - FARTHEST_IMAGE)}};
 }
-
-#endif

@@ -10,8 +10,7 @@
 //             look at place[cells.member[k]], by its nearest image.
 // Trap: along an axis with fewer than three cells the cells around c come twice where
 // it repeats. Made once, it is safe for several threads.
-#ifndef CRAQUELURE_LINKED_CELLS_H
-#define CRAQUELURE_LINKED_CELLS_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -46,5 +45,3 @@ int cell_along(const struct linked_cells *cells, int axis, double x);
 
 // Index in OFFSET of the cell that CELL counts along the axes.
 int cell_number(const struct linked_cells *cells, const int cell[3]);
-
-#endif

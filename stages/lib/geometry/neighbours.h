@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which grains lie close to which.
-#ifndef CRAQUELURE_NEIGHBOURS_H
-#define CRAQUELURE_NEIGHBOURS_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -33,5 +32,3 @@ int compare_pairs(const void *a, const void *b);
 // From grain I to grain J, to its nearest image where the box repeats, m. Exactly
 // opposite from J to I, and right wherever the positions lie.
 struct vector nearest_image(const struct packing *packing, int i, int j);
-
-#endif

@@ -3,8 +3,7 @@
 // liquid in a free body pulls its grains against each other, so its net load is
 // rounding and the errors of a model; with nothing to hold the body even that would
 // accelerate it away.
-#ifndef CRAQUELURE_NET_LOAD_H
-#define CRAQUELURE_NET_LOAD_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -62,5 +61,3 @@ struct vector whole_place(const struct whole *whole, int grain); // from the cen
 // about an axis across which the box repeats, nor for grains in a line about that. It
 // is the pseudo-inverse of the inertia tensor times MOMENT, in the units of WHOLE.
 struct vector whole_turn(const struct whole *whole, struct vector moment);
-
-#endif

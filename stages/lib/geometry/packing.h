@@ -7,8 +7,7 @@
 // images is as good. From one thing to another goes image_apart or nearest_image
 // (neighbours.h), never a difference of positions. Where it does not repeat along an
 // axis, wall 2 axis and 2 axis + 1 stand there, unless a body takes their place.
-#ifndef CRAQUELURE_PACKING_H
-#define CRAQUELURE_PACKING_H
+#pragma once
 
 #include "geometry/domain_shape.h"
 #include "geometry/image.h"
@@ -102,5 +101,3 @@ double *scale_bond_strengths(const struct packing *packing, double mean);
 
 // Frees what the packing owns and empties it; safe on an empty one.
 void packing_free(struct packing *packing);
-
-#endif

@@ -3,8 +3,7 @@
 // outside the box, grains in one place, empty space within the walls, squashed layers.
 // Facts are measured (packing_facts.c), then judged (packing_check.c); who has other
 // facts adds findings of its own.
-#ifndef CRAQUELURE_PACKING_CHECK_H
-#define CRAQUELURE_PACKING_CHECK_H
+#pragma once
 
 #include "geometry/porosity.h"
 
@@ -70,5 +69,3 @@ void add_finding(struct findings *findings, enum severity severity, const char *
 // names keys of pack and check, for the user to change.
 void judge_packing(const struct packing *packing, const struct packing_facts *facts,
                    struct findings *findings);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How much of a packing is solid, and where. What two grains share counts once, pair by
 // pair: exact as long as no three grains share anything.
-#ifndef CRAQUELURE_POROSITY_H
-#define CRAQUELURE_POROSITY_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -41,5 +40,3 @@ double solid_volume(const struct packing *packing, const struct contacts *contac
 // window. O(slices that each grain reaches, summed).
 void slice_porosity(const struct packing *packing, const struct contacts *contacts,
                     const struct window *window, int count, double *porosity);
-
-#endif

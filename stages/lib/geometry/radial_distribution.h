@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The radial distribution function g(r): how many centres there are at a distance from
 // a centre, relative to as many points anywhere.
-#ifndef CRAQUELURE_RADIAL_DISTRIBUTION_H
-#define CRAQUELURE_RADIAL_DISTRIBUTION_H
+#pragma once
 
 #include "geometry/porosity.h"
 
@@ -22,5 +21,3 @@ bool radial_distribution(const struct packing *packing, const struct window *win
 // repeat (along y only when the packing is not flat), and at most ten mean spacings, to
 // bound the work where grains overlap beyond reason; m.
 double radial_reach(const struct packing *packing, const struct window *window);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Radii in another unit than places: columns of a table in µm and mm.
-#ifndef CRAQUELURE_RADIUS_UNIT_H
-#define CRAQUELURE_RADIUS_UNIT_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -9,5 +8,3 @@
 // 1e-6; 1 where they are, where there are fewer than 20, and where nothing is certain.
 // Sorts the places along each axis.
 double radius_unit(const struct packing *packing);
-
-#endif

@@ -6,8 +6,7 @@
 // and arc cosines lose half of them near 0. Here numerator and denominator are sums of
 // products, and one atan2 takes both; angles beyond 2 pi of a polygon come out modulo 4
 // pi.
-#ifndef CRAQUELURE_SOLID_ANGLE_H
-#define CRAQUELURE_SOLID_ANGLE_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -38,5 +37,3 @@ static inline double solid_angle_between(struct half_angle from, struct half_ang
     return 2 * atan2(to.imaginary * from.real - from.imaginary * to.real,
                      to.real * from.real + to.imaginary * from.imaginary);
 }
-
-#endif

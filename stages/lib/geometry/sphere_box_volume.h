@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Volumes of spheres, and of what two of them share, inside an axis-parallel box.
-#ifndef CRAQUELURE_SPHERE_BOX_VOLUME_H
-#define CRAQUELURE_SPHERE_BOX_VOLUME_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -33,5 +32,3 @@ struct lens lens_between(double first, double second, struct vector apart);
 // planes of one direction cut it. Where planes of two do, along an edge, both shares
 // multiplied: a lens is small.
 double lens_in_box(const struct lens *lens, struct vector lower, struct vector upper);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of a box that may repeat, each with the spheres that come near it: what lies
 // around a place is found there, however much the sizes of spheres differ.
-#ifndef CRAQUELURE_SPHERE_CELLS_H
-#define CRAQUELURE_SPHERE_CELLS_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -44,5 +43,3 @@ static inline int sphere_cell_along(const struct sphere_cells *cells, int axis,
     if (cells->repeats[axis]) return (int)at;
     return at > 0 ? at < cells->count[axis] ? (int)at : cells->count[axis] - 1 : 0;
 }
-
-#endif

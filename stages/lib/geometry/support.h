@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What holds a body: grains at walls of the box, and those that bonds join to them.
-#ifndef CRAQUELURE_GEOMETRY_SUPPORT_H
-#define CRAQUELURE_GEOMETRY_SUPPORT_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -19,5 +18,3 @@ int *bonded_pieces(const struct packing *packing);
 
 // How many grains bonds join to those marked in HOLDS (n_particle), these included.
 int count_supported(const struct packing *packing, const uint8_t *holds);
-
-#endif

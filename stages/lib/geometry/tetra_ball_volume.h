@@ -5,8 +5,7 @@
 // Of a cell around a grain: shift the grain's centre to the origin, cut each face into
 // triangles, counter-clockwise seen from outside, and sum over them. The void of a
 // throat is such a sum over the triangles beside it (network/void_volume.h).
-#ifndef CRAQUELURE_SPHERE_CONE_H
-#define CRAQUELURE_SPHERE_CONE_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -17,5 +16,3 @@
 // triangle; to 1e-15 of the ball or the tetrahedron.
 double tetrahedron_outside_ball(double radius, struct vector a, struct vector b,
                                 struct vector c);
-
-#endif

@@ -5,8 +5,7 @@
 // plain sums and products in the order written, so the same digits everywhere. By
 // value, because compilers keep three doubles in registers; small names, because
 // formulas are read more often than written.
-#ifndef CRAQUELURE_VECTOR_H
-#define CRAQUELURE_VECTOR_H
+#pragma once
 
 #include <assert.h>
 #include <math.h>
@@ -96,5 +95,3 @@ static inline double largest_component(struct vector a)
     const double more = x > y ? x : y;
     return more > z ? more : z;
 }
-
-#endif

@@ -2,8 +2,7 @@
 // The grains in the units of the computation, and their copies in a periodic box. The
 // unit of length is the cube root of the box volume per grain, so that all that follows
 // is of the order of 1, whatever the size of the grains.
-#ifndef CRAQUELURE_CELL_GRAINS_H
-#define CRAQUELURE_CELL_GRAINS_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/image.h"
@@ -39,5 +38,3 @@ struct vector in_image(const struct grains *grains, struct vector position,
 
 // Whether any direction repeats.
 bool grains_repeat(const struct grains *grains);
-
-#endif

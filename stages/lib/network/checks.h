@@ -3,8 +3,7 @@
 // dataset and row, or the parameter. Checked by those who are about to divide by a
 // radius, not when a network is read: a network with a shut throat is fine for looking
 // at.
-#ifndef CRAQUELURE_NETWORK_CHECKS_H
-#define CRAQUELURE_NETWORK_CHECKS_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -17,5 +16,3 @@ enum status check_throat_radius(const struct network *network, int throat,
 // 0 is always fine.
 enum status check_gravity(const struct network *network, double gravity,
                           struct reason *reason);
-
-#endif

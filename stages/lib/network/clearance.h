@@ -7,8 +7,7 @@
 // sqrt(p + R^2) - R there, which falls with R: the largest of them is the nearest. Of
 // the other grains, with no less power, none that is no larger can be nearer; a larger
 // one can. So only grains larger than all beside a throat are looked for.
-#ifndef CRAQUELURE_CLEARANCE_H
-#define CRAQUELURE_CLEARANCE_H
+#pragma once
 
 #include "geometry/packing.h"
 #include "geometry/sphere_cells.h"
@@ -64,5 +63,3 @@ static inline struct clear_way clear_of(struct clear_way way, struct vector cent
 // what it does not search, it takes from there.
 double least_clearance(const struct sphere_cells *grains, const struct vector end[2],
                        struct clear_way way);
-
-#endif

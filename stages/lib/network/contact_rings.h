@@ -2,8 +2,7 @@
 // The liquid that throats leave as rings around contacts, and in narrow gaps, when gas
 // enters them: one ring for two grains that share a face, the exact bridge between them
 // (bridges/bridges.h), divided among the throats around the face.
-#ifndef CRAQUELURE_CONTACT_RINGS_H
-#define CRAQUELURE_CONTACT_RINGS_H
+#pragma once
 
 #include "network/throat_sides.h"
 
@@ -67,5 +66,3 @@ enum status whole_rings(const struct network *network,
 // than MOST_IN_RINGS of what it does. Returns whether they did.
 bool limit_parts(const struct network *network, const struct contact_rings *rings,
                  int throat, double *volume);
-
-#endif

@@ -9,8 +9,7 @@
 // A stage puts a struct drawn_radii into its struct of parameters and calls give_radii
 // before anything is made from radii or volumes (closed throats shut, an order of entry
 // found); then report_cut_radii, or describe_cut_radii for a text of its own.
-#ifndef CRAQUELURE_DRAWN_RADII_H
-#define CRAQUELURE_DRAWN_RADII_H
+#pragma once
 
 #include "network/throat_radius.h"
 #include "parameters/parameters.h"
@@ -74,5 +73,3 @@ void report_cut_radii(const struct drawn_radii *radii);
      DRAWN_RADII_AT(at, seed), BETWEEN(0, 4294967295.0), \
      .text = "seed of drawn radii"}
 // clang-format on
-
-#endif

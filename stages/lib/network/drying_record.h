@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a network dried, step by step, as schemas/drying.json keeps it.
-#ifndef CRAQUELURE_DRYING_RECORD_H
-#define CRAQUELURE_DRYING_RECORD_H
+#pragma once
 
 #include "network/network.h"
 
@@ -25,5 +24,3 @@ double *full_saturations(const struct network *network);
 // Steps must be taken one after the other from 0, on what full_saturations gives.
 // O(changes of the step).
 void apply_changes(const struct drying_record *record, int step, double *saturation);
-
-#endif

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Liquid that throats imposed empty, or closed, have shut in: no gas can reach it.
-#ifndef CRAQUELURE_ENCLOSED_H
-#define CRAQUELURE_ENCLOSED_H
+#pragma once
 
 #include "network/network.h"
 
 // Imposes empty as well the throats of NETWORK from which no way through liquid leads
 // to a node of OPEN (n_node); none where there is no such node. Returns how many.
 int empty_enclosed_throats(struct network *network, const bool *open);
-
-#endif

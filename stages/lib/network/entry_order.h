@@ -2,8 +2,7 @@
 // The order in which gas enters throats, or nodes, that it could enter: the easiest
 // first. Throats that share their narrowest place have equal radii, so which of them is
 // first must not depend on how the network is numbered.
-#ifndef CRAQUELURE_ENTRY_ORDER_H
-#define CRAQUELURE_ENTRY_ORDER_H
+#pragma once
 
 #include "network/network.h"
 
@@ -21,5 +20,3 @@ void order_throats(const struct network *network, const double *entry_priority,
 // on.
 void order_nodes(const struct network *network, const double *entry_priority,
                  int *order);
-
-#endif

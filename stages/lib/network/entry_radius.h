@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_ENTRY_RADIUS_H
-#define CRAQUELURE_ENTRY_RADIUS_H
+#pragma once
 
 #include "network/open_section.h"
 
@@ -11,5 +10,3 @@
 // equal radii or not; walls count as mirrors. 0: the iteration found none, as where
 // grains overlap all around.
 double entry_radius(const struct open_section *section, double contact_angle);
-
-#endif

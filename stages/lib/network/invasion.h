@@ -15,8 +15,7 @@
 // Without gravity a throat of radius r opens at the pressure 2 sigma cos(theta) / r, so
 // the order is that of rising pressures only as far as gas can reach: the k-th event
 // may need less than one before.
-#ifndef CRAQUELURE_NETWORK_INVASION_H
-#define CRAQUELURE_NETWORK_INVASION_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -58,5 +57,3 @@ enum status invade(const struct network *network,
                    struct invasion *invasion, struct reason *reason);
 
 void invasion_free(struct invasion *invasion);
-
-#endif

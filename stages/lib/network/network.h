@@ -16,8 +16,7 @@
 //
 // Functions that only read are safe for several threads. A network from another program
 // may lack faces (n_face = 0): what needs them says so.
-#ifndef CRAQUELURE_NETWORK_H
-#define CRAQUELURE_NETWORK_H
+#pragma once
 
 #include "geometry/image.h"
 #include "geometry/packing.h"
@@ -130,5 +129,3 @@ double hydraulic_radius(const struct network *network, int throat);
 void copy_throat_shape(struct network *network, int from, int to);
 // Forgets what the throats conduct: they are cylinders.
 void forget_throat_shapes(struct network *network);
-
-#endif

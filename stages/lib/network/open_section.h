@@ -7,8 +7,7 @@
 // along the throat (z = 0 at its first node), grain i blocks of that prism a sector of
 // a disc: angle a_i, radius rho_i(z), rho_i^2 = r_i^2 - (z - h_i)^2
 // [docs/transport.md].
-#ifndef CRAQUELURE_OPEN_SECTION_H
-#define CRAQUELURE_OPEN_SECTION_H
+#pragma once
 
 // One grain of the polygon.
 struct section_grain {
@@ -66,5 +65,3 @@ struct throat_shape section_shape(const struct open_section *given);
 // Where the section is narrowest, m from the first node: at the mean plane of the
 // centres, within the throat.
 double narrowest_place(const struct open_section *section);
-
-#endif

@@ -4,8 +4,7 @@
 // grains among its corners. All lengths are in units (cell_grains.h). Topology is
 // decided by exact predicates on the grid of cell_grains.h, so equal input gives equal
 // cells.
-#ifndef CRAQUELURE_PORE_CELLS_H
-#define CRAQUELURE_PORE_CELLS_H
+#pragma once
 
 #include "network/cell_grains.h"
 
@@ -62,5 +61,3 @@ static inline struct vector corner_position(const struct grains *grains,
 {
     return in_image(grains, grains->position[cell->corner[k]], cell->corner_image[k]);
 }
-
-#endif

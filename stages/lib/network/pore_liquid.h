@@ -12,8 +12,7 @@
 //     add_meniscus_forces     in each time step
 //     mark_distorted          pores of which the triangulation says nothing any more
 // The connections never change: a body that flows needs another model.
-#ifndef CRAQUELURE_PORE_LIQUID_H
-#define CRAQUELURE_PORE_LIQUID_H
+#pragma once
 
 #include "basics/status.h"
 #include "geometry/image.h"
@@ -100,5 +99,3 @@ double liquid_volume(const struct pore_liquid *liquid, const struct vector *at,
 // Writes to DRYNESS (n_particle) which share of the pores around each grain, by their
 // volumes at the start, gas has entered; 0 where there are none.
 void find_dryness(const struct pore_liquid *liquid, double *dryness);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rings of liquid that throats left around contacts, and how they dried, as
 // schemas/drying.json keeps them.
-#ifndef CRAQUELURE_RING_RECORD_H
-#define CRAQUELURE_RING_RECORD_H
+#pragma once
 
 #include "network/drying_record.h"
 
@@ -28,5 +27,3 @@ void ring_record_free(struct ring_record *rings);
 // (n_throat) of throats, OF_RINGS (n_node) of the rings at nodes, both at one step.
 double ring_volume(const struct ring_record *rings, const struct network *network,
                    int r, const double *saturation, const double *of_rings);
-
-#endif

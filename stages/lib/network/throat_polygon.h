@@ -4,8 +4,7 @@
 // the angles at both its grains, what these cover twice, and the gap between them. Of a
 // face with a wall, or with an auxiliary grain, only the grain's own half counts, up to
 // the throat.
-#ifndef CRAQUELURE_THROAT_POLYGON_H
-#define CRAQUELURE_THROAT_POLYGON_H
+#pragma once
 
 #include "network/open_section.h"
 #include "network/throat_sides.h"
@@ -32,5 +31,3 @@ void throat_polygon_free(struct throat_polygon *polygon);
 // search of a grain among those seen already, O(sides^2).
 void throat_polygon_fill(struct throat_polygon *polygon, const struct network *network,
                          const struct throat_sides *sides, int throat);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Throat radii that are drawn instead of measured [K 2.2, 3.11].
-#ifndef CRAQUELURE_THROAT_RADIUS_H
-#define CRAQUELURE_THROAT_RADIUS_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -37,5 +36,3 @@ enum status draw_radii(struct network *network,
 // The share of normal radii of MEAN and DEVIATION that are not above 0 and are drawn
 // again. Those two become the mean and standard deviation of what is left.
 double cut_normal(double *mean, double *deviation);
-
-#endif

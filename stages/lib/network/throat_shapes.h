@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_THROAT_SHAPES_H
-#define CRAQUELURE_THROAT_SHAPES_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -20,5 +19,3 @@ enum status find_throat_shapes(struct network *network, struct reason *reason);
 // CONTACT_ANGLE theta in rad; no less than the radius it has. Faces as above.
 enum status find_entry_radii(struct network *network, double contact_angle,
                              struct reason *reason);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The faces around each throat: every throat is a side of the faces that meet in it,
 // three of them unless nodes were merged or a wall holds the throat.
-#ifndef CRAQUELURE_THROAT_SIDES_H
-#define CRAQUELURE_THROAT_SIDES_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -31,5 +30,3 @@ void throat_sides_free(struct throat_sides *sides);
 // Side K of SIDES, which belongs to THROAT.
 struct throat_side throat_side(const struct network *network,
                                const struct throat_sides *sides, int throat, int64_t k);
-
-#endif

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_VOID_VOLUME_H
-#define CRAQUELURE_VOID_VOLUME_H
+#pragma once
 
 #include "basics/status.h"
 #include "network/network.h"
@@ -20,5 +19,3 @@ enum status find_void_volumes(struct network *network, struct reason *reason);
 // The middle of the face's rim, in the repetition of the box in which its first grain
 // is: nodes that coincide, as on lattices, do not pull it to their side.
 struct vector face_middle(const struct network *network, int face);
-
-#endif

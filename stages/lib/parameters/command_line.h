@@ -2,8 +2,7 @@
 // What every program's command line has alike: --help, --version, an error in one line.
 // Errors of the command line are exits with 64 and one line, here and nowhere else; GNU
 // argp prints help and reads options.
-#ifndef CRAQUELURE_COMMAND_LINE_H
-#define CRAQUELURE_COMMAND_LINE_H
+#pragma once
 
 #include <argp.h>
 
@@ -29,5 +28,3 @@ void parse_command_line(const struct argp *argp, int argc, char **argv, void *in
 long whole_of_option(const char *option, const char *text, long least, long most);
 double number_of_option(const char *option, const char *text, double least,
                         double most);
-
-#endif

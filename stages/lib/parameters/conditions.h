@@ -8,8 +8,7 @@
 // The order of calls matters: stage_begin (which calls conditions_share) fills the
 // struct, then conditions_complete or _require, once, before any property is read;
 // _describe and _note go by `given`, which that call sets.
-#ifndef CRAQUELURE_CONDITIONS_OF_SCENE_H
-#define CRAQUELURE_CONDITIONS_OF_SCENE_H
+#pragma once
 
 #include "basics/status.h"
 #include "fluids/fluids.h"
@@ -136,5 +135,3 @@ void conditions_note(const struct conditions *conditions, unsigned needed);
      .text = "imperfect wetting: the capillary pressure is 2 surface_tension " \
              "cos(this) / r"}
 // clang-format on
-
-#endif

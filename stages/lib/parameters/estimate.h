@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What --estimate prints.
-#ifndef CRAQUELURE_ESTIMATE_H
-#define CRAQUELURE_ESTIMATE_H
+#pragma once
 
 #include "costs/costs.h"
 
@@ -13,5 +12,3 @@ json_t *rough(double value);
 // Prints on standard output, as one line of JSON, COST and the sizes of BODY that the
 // next stage of a chain may ask for; `range` only where seconds are not foreseen.
 void print_estimate(const struct cost *cost, const struct body_size *body);
-
-#endif

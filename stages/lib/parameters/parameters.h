@@ -20,8 +20,7 @@
 // checks it afterwards and names the key. A choice is stored as its place in .choices
 // and cast to an enum, so both must have one order. Nothing here is safe for threads;
 // all of it happens before a stage begins to compute.
-#ifndef CRAQUELURE_PARAMETERS_H
-#define CRAQUELURE_PARAMETERS_H
+#pragma once
 
 #include <jansson.h>
 #include <stdbool.h>
@@ -133,5 +132,3 @@ void parameters_print(const struct parameter *table, FILE *stream);
 // Sorted keys, no white space, 17 digits: equal parameters give equal bytes. The caller
 // frees the text. What digests and comparisons of provenance go by.
 char *json_canonical(const json_t *json);
-
-#endif

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#ifndef CRAQUELURE_SPELLING_H
-#define CRAQUELURE_SPELLING_H
+#pragma once
 
 // The least number of letters to insert, delete or change to turn A into B
 // (Levenshtein); only the first 127 letters of each count. Bytes are letters.
 int edit_distance(const char *a, const char *b);
-
-#endif

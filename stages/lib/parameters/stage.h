@@ -22,8 +22,7 @@
 // -p, "conditions" of that scene for shared keys, the default. A stage reports
 // all mistakes of the user before it computes anything, and tries its outputs before it
 // works for hours.
-#ifndef CRAQUELURE_STAGE_H
-#define CRAQUELURE_STAGE_H
+#pragma once
 
 #include "basics/progress.h"
 #include "parameters/parameters.h"
@@ -80,5 +79,3 @@ void invocation_free(struct invocation *invocation);
 
 // "dry 1" into TEXT, which is returned: what an artifact's `program` attribute says.
 const char *stage_program(const struct stage *stage, char text[64]);
-
-#endif

@@ -14,8 +14,7 @@
 //     d[TORSION], d[BENDING], d[BENDING + 1]  = n, t1, t2 . (w_j - w_i)
 // In short d = B u, and what resists acts on the grains as -B^T load. All functions are
 // pure but those that say which array they change.
-#ifndef CRAQUELURE_CONTACT_PAIR_H
-#define CRAQUELURE_CONTACT_PAIR_H
+#pragma once
 
 #include "displacement.h"
 
@@ -123,5 +122,3 @@ struct overload pair_overload(const struct contact_pair *pair,
 
 // A contact stays, where grains touch at DEFORMATION, with the shear that there is.
 void pair_break_bond(struct contact_pair *pair, const double deformation[COMPONENTS]);
-
-#endif

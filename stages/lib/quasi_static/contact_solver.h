@@ -16,8 +16,7 @@
 //     contact_solver_clear      after stiffness_factor
 // A row costs one forward solve on its reach, W of m rows m^2 products of these, a
 // solution O(m^3) for each matrix of Newton's method. Rows stay until they are cleared.
-#ifndef CRAQUELURE_CONTACT_SOLVER_H
-#define CRAQUELURE_CONTACT_SOLVER_H
+#pragma once
 
 #include "stiffness.h"
 
@@ -69,5 +68,3 @@ bool contact_solver_solve(struct contact_solver *solver,
 // stiffness has begun with.
 void contact_solver_subtract(const struct contact_solver *solver,
                              double compliance_factor, struct displacement *residual);
-
-#endif

@@ -2,8 +2,7 @@
 // Inside struct contact_solver, for its own files only. Symbols as in contact_solver.c:
 //     e = free_deformation - f W q(e),  W = B K^-1 B^T,  f the compliance factor.
 // Rows are numbered as they were activated; those of one pair need not lie together.
-#ifndef CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
-#define CRAQUELURE_CONTACT_SOLVER_INTERNAL_H
+#pragma once
 
 #include "contact_solver.h"
 
@@ -85,5 +84,3 @@ bool semismooth_newton(struct contact_solver *c, bool is_augmented, double enoug
 // Sweeps over the pairs, each of which is solved exactly while the others keep their
 // loads, to half of ENOUGH; until no contact changes its state, ten at most.
 void gauss_seidel(struct contact_solver *c, double enough);
-
-#endif

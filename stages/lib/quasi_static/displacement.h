@@ -5,8 +5,7 @@
 // are of like size, and one number, displacement_size, judges both. One struct for
 // displacements and for loads, because every operator here is symmetric in both: B maps
 // the one, B^T the other.
-#ifndef CRAQUELURE_DISPLACEMENT_H
-#define CRAQUELURE_DISPLACEMENT_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -48,5 +47,3 @@ static inline double displacement_size(struct displacement a)
 {
     return fmax(norm(a.translation), norm(a.rotation));
 }
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The contact pairs of a packing: its bonds, other grains near each other, and grains
 // near the wall beneath.
-#ifndef CRAQUELURE_MAKE_CONTACT_PAIRS_H
-#define CRAQUELURE_MAKE_CONTACT_PAIRS_H
+#pragma once
 
 #include "contact_pair.h"
 #include "dem/dem.h"
@@ -36,5 +35,3 @@ struct contact_pair wall_pair(const struct contact_pair_setup *setup, int i);
 // that of all sums.
 struct contact_pair *make_contact_pairs(const struct contact_pair_setup *setup,
                                         int *count);
-
-#endif

@@ -25,8 +25,7 @@
 // What SETUP points to is kept, not copied, and must live as long. The state depends on
 // all loads before: history is that of friction and of bonds that broke. Rates do not
 // come in; times of loads are the caller's. An engine is for one thread.
-#ifndef CRAQUELURE_QUASI_STATIC_H
-#define CRAQUELURE_QUASI_STATIC_H
+#pragma once
 
 #include "checkpoint/keeper.h"
 #include "dem/dem.h"
@@ -108,5 +107,3 @@ int quasi_static_unconverged(const struct quasi_static *qs, int *last);
 // How often the body snapped through or buckled, and the grain that moved most at the
 // LAST time.
 int quasi_static_instabilities(const struct quasi_static *qs, int *last);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside struct quasi_static, for the files of this library only. All in its units:
 // lengths in mean radii, stiffnesses in the largest of a pair.
-#ifndef CRAQUELURE_QUASI_STATIC_INTERNAL_H
-#define CRAQUELURE_QUASI_STATIC_INTERNAL_H
+#pragma once
 
 #include "contact_solver.h"
 #include "geometry/fragments.h"
@@ -217,5 +216,3 @@ void remove_rigid_motion(const struct quasi_static *qs, struct displacement *ste
 void remove_small_rigid_motion(const struct quasi_static *qs,
                                struct displacement *moved);
 void remove_momentum(const struct quasi_static *qs, struct displacement *mode);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The law of one contact solved exactly while all others keep their loads: open,
 // sticking or slipping.
-#ifndef CRAQUELURE_RETURN_MAPPING_H
-#define CRAQUELURE_RETURN_MAPPING_H
+#pragma once
 
 #include "contact_pair.h"
 
@@ -23,5 +22,3 @@ bool return_map(const struct contact_pair *pair, const struct local_problem *pro
 // Solves three equations MATRIX answer = RIGHT, in place. False: singular. RIGHT
 // becomes the answer; MATRIX is overwritten.
 bool solve_three(double matrix[3][3], double right[3]);
-
-#endif

@@ -7,8 +7,7 @@
 // diagonal in these. The factor is supernodal (sparse/supernodal.h); its pattern
 // depends on the pairs alone, so it is analysed once and factored as often as states
 // change.
-#ifndef CRAQUELURE_STIFFNESS_H
-#define CRAQUELURE_STIFFNESS_H
+#pragma once
 
 #include "contact_pair.h"
 #include "quasi_static/large/pair_frame.h"
@@ -74,5 +73,3 @@ void stiffness_subtract(struct stiffness *stiffness,
 
 // Multiplications that a factor takes: to judge whether a new one is due.
 double stiffness_work(const struct stiffness *stiffness);
-
-#endif

@@ -15,8 +15,7 @@
 //     } while (size > tolerance && count++ < most);
 // A step costs O(n ANDERSON_DEPTH). Not safe for threads; G may use some. A step that
 // is much larger than the last one drops all that is remembered.
-#ifndef CRAQUELURE_ANDERSON_H
-#define CRAQUELURE_ANDERSON_H
+#pragma once
 
 enum { ANDERSON_DEPTH = 20 };
 
@@ -40,5 +39,3 @@ void anderson_begin(struct anderson *anderson, int n);
 // STEP (n) is G(x) - x at the x where the last step led; it becomes the step to take.
 // The first step after anderson_begin is G(x) - x itself.
 void anderson_step(struct anderson *anderson, double *step);
-
-#endif

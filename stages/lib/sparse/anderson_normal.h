@@ -3,8 +3,7 @@
 // normal equations: a step costs three products and a sum for each step that is kept,
 // not their number again. For a G that costs little, or is not smooth: half of the
 // digits are lost where steps are alike.
-#ifndef CRAQUELURE_ANDERSON_NORMAL_H
-#define CRAQUELURE_ANDERSON_NORMAL_H
+#pragma once
 
 enum { ANDERSON_NORMAL_DEPTH = 24 };
 
@@ -29,5 +28,3 @@ void anderson_normal_begin(struct anderson_normal *anderson);
 
 // STEP (n) is G(x) - x at the x where the last step led; it becomes the step to take.
 void anderson_normal_step(struct anderson_normal *anderson, double *step);
-
-#endif

@@ -13,8 +13,7 @@
 //     }
 // A block of two rows is filled with the one that comes first, and asked for again with
 // the other, so that each row knows its columns.
-#ifndef CRAQUELURE_BLOCK_ROWS_H
-#define CRAQUELURE_BLOCK_ROWS_H
+#pragma once
 
 #include <stdint.h>
 
@@ -49,5 +48,3 @@ void block_rows_multiply(const struct block_rows *rows, const double *x, double 
 // Z = inverses of the diagonal blocks times RESIDUAL, both (3 n).
 void block_rows_precondition(const struct block_rows *rows, const double *residual,
                              double *z);
-
-#endif

@@ -3,8 +3,7 @@
 // thousand unknowns (README.md). A factor L D L^T of the balances, made once and used
 // for many right sides. Potentials come out in the unit of B over that of the
 // conductances.
-#ifndef CRAQUELURE_CHOLESKY_H
-#define CRAQUELURE_CHOLESKY_H
+#pragma once
 
 #include "basics/status.h"
 #include "elimination/conductance_matrix.h"
@@ -24,5 +23,3 @@ void cholesky_free(struct cholesky *cholesky);
 // where it is given, as in conductance_matrix.h. O(numbers in the factor). For one
 // thread at a time.
 bool cholesky_solve(struct cholesky *cholesky, const double *b, double *x);
-
-#endif

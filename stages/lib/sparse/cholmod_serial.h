@@ -4,8 +4,7 @@
 // supernodal factors by the size of the matrix, and threaded BLAS would add in another
 // order each time. So all is fixed here. What CHOLMOD returns is NULL when out of
 // memory: callers must look.
-#ifndef CRAQUELURE_CHOLMOD_SERIAL_H
-#define CRAQUELURE_CHOLMOD_SERIAL_H
+#pragma once
 
 #include <cholmod.h>
 
@@ -51,5 +50,3 @@ static inline cholmod_sparse *take_matrix(cholmod_common *common,
     cholmod_free_triplet(&entries, common);
     return matrix;
 }
-
-#endif

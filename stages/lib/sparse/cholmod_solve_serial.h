@@ -3,8 +3,7 @@
 // cholmod_analyze and cholmod_factorize made with cholmod_serial_start: neither
 // supernodal nor L L'. No permutation is applied: whoever calls knows the order
 // (factor->Perm).
-#ifndef CRAQUELURE_CHOLMOD_SOLVE_SERIAL_H
-#define CRAQUELURE_CHOLMOD_SOLVE_SERIAL_H
+#pragma once
 
 #include <cholmod.h>
 
@@ -12,5 +11,3 @@
 // is overwritten. About three times as fast as cholmod_solve2 where many columns are
 // alike. No allocation and no failure.
 void cholmod_solve_serial(const cholmod_factor *factor, double *x, double *work);
-
-#endif

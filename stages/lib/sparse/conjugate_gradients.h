@@ -5,8 +5,7 @@
 // and work[2] hold the last direction and its product, so a caller that wants to resume
 // must not touch them. In exact arithmetic the error falls at least as the powers of
 // (sqrt(k) - 1) / (sqrt(k) + 1), k the condition number of M^-1 A.
-#ifndef CRAQUELURE_CONJUGATE_GRADIENTS_H
-#define CRAQUELURE_CONJUGATE_GRADIENTS_H
+#pragma once
 
 // A problem with a symmetric positive definite matrix A of N rows, and a preconditioner
 // M. MULTIPLY finds A X, PRECONDITION finds Z = M^-1 RESIDUAL. Both must be linear and
@@ -36,5 +35,3 @@ int resume_conjugate_gradients(const struct linear_problem *problem, double *res
 // Sum of x_i y_i in blocks of fixed length: the same for any number of threads. Blocks
 // are added in their order, each by one thread.
 double sum_of_products(const double *x, const double *y, int n);
-
-#endif

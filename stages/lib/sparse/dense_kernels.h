@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small dense products. Columns lie STRIDE apart: entry (i, p) of A at a[p a_stride +
 // i]. Products are fused and summed in the same order on every machine.
-#ifndef CRAQUELURE_DENSE_KERNELS_H
-#define CRAQUELURE_DENSE_KERNELS_H
+#pragma once
 
 #include "basics/simd.h"
 
@@ -32,5 +31,3 @@ static inline double dot_product(int n, const double *a, const double *b)
 void multiply_transposed(int m, int n, int k, const double *a, int a_stride,
                          const double *b, int b_stride, double *c, int c_stride,
                          bool lower, double *work);
-
-#endif

@@ -3,8 +3,7 @@
 // rows that fit into the cache: the rows of slipping contacts. Panels of DENSE_PANEL
 // columns; the arithmetic is that of elimination column by column, in one order, the
 // same with AVX2 and AVX-512 (dense_lu_kernel.h).
-#ifndef CRAQUELURE_DENSE_LU_H
-#define CRAQUELURE_DENSE_LU_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -19,5 +18,3 @@ bool dense_factor(int n, double *matrix, int stride, int *row, double *work);
 // factor stays as it is.
 void dense_substitute(int n, const double *matrix, int stride, const int *row,
                       const double *right, double *answer);
-
-#endif

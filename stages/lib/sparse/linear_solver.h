@@ -11,8 +11,7 @@
 //         status = linear_correct(&linear, given, x, residual, 1e-3, &count, reason);
 // Where the residual does not fall any more, rounding of the flows is reached: that is
 // the caller's failure to tell.
-#ifndef CRAQUELURE_LINEAR_SOLVER_H
-#define CRAQUELURE_LINEAR_SOLVER_H
+#pragma once
 
 #include "cholesky.h"
 #include "elimination/approximate_cholesky.h"
@@ -49,5 +48,3 @@ void linear_solver_free(struct linear_solver *linear);
 enum status linear_correct(struct linear_solver *linear, const double *given,
                            struct compensated *x, double *residual, double reduction,
                            int *iterations, struct reason *reason);
-
-#endif

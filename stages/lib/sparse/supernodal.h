@@ -13,8 +13,7 @@
 // With P A P^T = L L^T, P the order of the factor; only `half` is in that order.
 // Factors work in memory of their own, so one is for one thread; several may be used
 // side by side.
-#ifndef CRAQUELURE_SUPERNODAL_H
-#define CRAQUELURE_SUPERNODAL_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -85,5 +84,3 @@ void forward_solves_apply(const struct supernodal *factor,
 void forward_solves_subtract(const struct supernodal *factor,
                              const struct forward_solves *solves, const double *share,
                              double *half);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is inside struct supernodal, for its own files only. Rows and columns are in the
 // order of the factor.
-#ifndef CRAQUELURE_SUPERNODAL_INTERNAL_H
-#define CRAQUELURE_SUPERNODAL_INTERNAL_H
+#pragma once
 
 #include "supernodal.h"
 
@@ -44,5 +43,3 @@ struct supernodal {
 // tree come in ascending order.
 void forward_through(struct supernodal *factor, const struct supernode *super,
                      double *x);
-
-#endif

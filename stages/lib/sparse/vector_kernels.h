@@ -5,8 +5,7 @@
 // Why a table of functions: the files for AVX2 and AVX-512 are compiled from one
 // template (vector_kernels_template.h), and which of them a processor can run is known
 // only at run time.
-#ifndef CRAQUELURE_VECTOR_KERNELS_H
-#define CRAQUELURE_VECTOR_KERNELS_H
+#pragma once
 
 #include "basics/cpu_features.h"
 #include "supernodal.h"
@@ -47,5 +46,3 @@ static inline const struct vector_kernels *vector_kernels(void)
 void forward_four(const struct supernode *super, double *x);
 void add_product_of_four(int n, const double *a, int a_lanes, const double *b,
                          double sum[BATCH][BATCH]);
-
-#endif

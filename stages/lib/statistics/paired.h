@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Whether two paired samples differ, such as those of the same aggregates treated in
 // two ways. All tests are two-sided.
-#ifndef CRAQUELURE_PAIRED_H
-#define CRAQUELURE_PAIRED_H
+#pragma once
 
 #include "statistics/sample.h"
 
@@ -27,5 +26,3 @@ struct wilcoxon {
 // such pairs; else by the normal distribution, corrected for ties and continuity. P is
 // 1 when no pairs are left. NAN where a value is not known.
 struct wilcoxon wilcoxon_test(struct sample a, struct sample b);
-
-#endif

@@ -4,8 +4,7 @@
 // Samples point to the caller's arrays, which are only read. p is the probability of
 // what was seen, or of more, if there were no difference. Rank tests of small samples
 // without ties are counted exactly; `exact` says so.
-#ifndef CRAQUELURE_SAMPLE_H
-#define CRAQUELURE_SAMPLE_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -47,5 +46,3 @@ struct mann_whitney {
 // Exact without ties and with up to 50 values in all; else by the normal distribution,
 // corrected for ties and continuity. NAN when a sample is empty.
 struct mann_whitney mann_whitney_test(struct sample a, struct sample b);
-
-#endif

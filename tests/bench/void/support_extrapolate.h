@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The limit of values on ever finer grids.
-#ifndef CRAQUELURE_VOID_EXTRAPOLATE_H
-#define CRAQUELURE_VOID_EXTRAPOLATE_H
+#pragma once
 
 enum { RESOLUTIONS = 3 };
 
@@ -17,5 +16,3 @@ struct limit extrapolate(const int cells[RESOLUTIONS], const double value[RESOLU
 // One line of JSON: porosity, cells, values of N directions, their limits and errors.
 void print_limits(double porosity, const int cells[RESOLUTIONS], int n,
                   double (*value)[RESOLUTIONS]);
-
-#endif

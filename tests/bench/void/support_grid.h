@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The void between spheres on a regular grid: how much of each face of each cell is
 // open.
-#ifndef CRAQUELURE_VOID_GRID_H
-#define CRAQUELURE_VOID_GRID_H
+#pragma once
 
 #include "geometry/packing.h"
 
@@ -38,5 +37,3 @@ static inline size_t cell_at(const struct grid *grid, int i, int j, int k)
     return (size_t)i * grid->stride[0] + (size_t)j * grid->stride[1] +
            (size_t)k * grid->stride[2];
 }
-
-#endif

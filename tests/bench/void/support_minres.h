@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Preconditioned minimal residuals, for symmetric matrices with eigenvalues of both
 // signs.
-#ifndef CRAQUELURE_VOID_MINRES_H
-#define CRAQUELURE_VOID_MINRES_H
+#pragma once
 
 #include "sparse/conjugate_gradients.h"
 
@@ -12,5 +11,3 @@
 // Returns the number of iterations, with what is left of the residual in LEFT.
 int minimal_residuals(const struct linear_problem *problem, const double *right,
                       double *x, double tolerance, int most, double *left);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Laplace's equation on a grid whose faces conduct differently, and multigrid for it.
-#ifndef CRAQUELURE_VOID_MULTIGRID_H
-#define CRAQUELURE_VOID_MULTIGRID_H
+#pragma once
 
 #include "support_grid.h"
 
@@ -44,5 +43,3 @@ void conduct(const struct level *level, double *x, double *product);
 
 // Z = M^-1 RESIDUAL by one W-cycle.
 void multigrid_cycle(struct multigrid *multigrid, const double *residual, double *z);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // -laplace of a velocity on a staggered grid that vanishes on spheres.
-#ifndef CRAQUELURE_VOID_NO_SLIP_H
-#define CRAQUELURE_VOID_NO_SLIP_H
+#pragma once
 
 #include "support_multigrid.h"
 
@@ -10,5 +9,3 @@
 // repeat only.
 struct level no_slip_level(const struct grid *grid, const struct packing *packing,
                            int axis);
-
-#endif

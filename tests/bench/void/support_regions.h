@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which node of a network each cell of a grid belongs to, and what flows between them.
-#ifndef CRAQUELURE_VOID_REGIONS_H
-#define CRAQUELURE_VOID_REGIONS_H
+#pragma once
 
 #include "network/network.h"
 #include "support_grid.h"
@@ -34,5 +33,3 @@ void add_flux(struct throat_fluxes *fluxes, const struct grid *grid,
 // Writes a row a throat: its number and its fluxes for gradients along x, y, z,
 // relative to the square of the grid's unit. Exits 73 and 74.
 void write_fluxes(const char *path, const struct throat_fluxes *fluxes, int n_throat);
-
-#endif

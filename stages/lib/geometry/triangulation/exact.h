@@ -8,8 +8,7 @@
 // asked only where an error bound in doubles does not decide (insertion_predicates.c):
 // n_exact of struct triangulation counts how often. No function fails; coordinates must
 // be finite.
-#ifndef CRAQUELURE_EXACT_H
-#define CRAQUELURE_EXACT_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -67,6 +66,4 @@ struct vector exact_power_centre(const struct weighted_point *const p[4]);
 
 #ifdef __cplusplus
 }
-#endif
-
 #endif

@@ -2,8 +2,7 @@
 // Inside of the incremental insertion only: a triangulation under way, and which cells
 // a point takes away. The places of cells that are gone are used again. `point` and
 // `box` are the caller's and must stay as they are.
-#ifndef CRAQUELURE_INSERTION_H
-#define CRAQUELURE_INSERTION_H
+#pragma once
 
 #include "geometry/triangulation/insertion_cell.h"
 
@@ -82,5 +81,3 @@ static inline bool takes(struct insertion *insertion, const struct live_cell *ce
         return takes_exactly(insertion, cell, e);
     return power < 0;
 }
-
-#endif

@@ -3,8 +3,7 @@
 // orthogonal to the spheres of its four points, |at - p|^2 - w_p the same for each (an
 // empty circumsphere where all weights w are 0). `error` bounds its rounding, so that
 // most points are told inside or outside without exact arithmetic.
-#ifndef CRAQUELURE_LIVE_CELL_H
-#define CRAQUELURE_LIVE_CELL_H
+#pragma once
 
 #include "geometry/triangulation/exact.h"
 
@@ -42,5 +41,3 @@ static_assert(sizeof(struct live_cell) == 64, "one cache line");
 // side by side in a vector.
 void find_centres(const struct weighted_point *point, const struct wall_box *box,
                   struct live_cell *cells, const int32_t *which, int count);
-
-#endif

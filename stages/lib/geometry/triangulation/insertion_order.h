@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In which order to insert points into a triangulation.
-#ifndef CRAQUELURE_INSERTION_ORDER_H
-#define CRAQUELURE_INSERTION_ORDER_H
+#pragma once
 
 #include "geometry/vector.h"
 
@@ -12,5 +11,3 @@
 // before and along a space-filling curve, so that walks from point to point stay short.
 // Each of 0..N-1 once; the same for the same points. O(n log n).
 int32_t *insertion_order(const struct vector *points, int n);
-
-#endif

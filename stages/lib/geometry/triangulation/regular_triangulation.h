@@ -10,8 +10,7 @@
 //     }
 // Made by one thread; safe to read for several. Memory: 64 bytes a cell while it is
 // made, 32 in the end; points that fill space have 6.8 cells each.
-#ifndef CRAQUELURE_REGULAR_TRIANGULATION_H
-#define CRAQUELURE_REGULAR_TRIANGULATION_H
+#pragma once
 
 #include "basics/memory.h"
 #include "geometry/image.h"
@@ -85,5 +84,3 @@ int triangulate(const struct weighted_point *points, int n,
 struct triangulation triangulate_between(const struct weighted_point *points, int n,
                                          const struct wall_box *box, unsigned walls);
 void triangulation_free(struct triangulation *triangulation);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The regular triangulation of weighted points between walls.
-#ifndef CRAQUELURE_TRIANGULATION_IN_WALLS_H
-#define CRAQUELURE_TRIANGULATION_IN_WALLS_H
+#pragma once
 
 #include "geometry/triangulation/regular_triangulation.h"
 
@@ -14,5 +13,3 @@
 int triangulate_in_walls(const struct vector *points, const double *weights, int n,
                          unsigned walls, struct vector upper,
                          struct triangulation *triangulation);
-
-#endif

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains that have come near each other become contact pairs.
-#ifndef CRAQUELURE_CONTACT_DETECTION_H
-#define CRAQUELURE_CONTACT_DETECTION_H
+#pragma once
 
 #include "large_state.h"
 
@@ -9,5 +8,3 @@
 // that are new: then all arrays of pairs are made anew and the residual is that of all.
 // Whether any of the new pairs touch.
 bool detect_contacts(struct quasi_static *qs);
-
-#endif

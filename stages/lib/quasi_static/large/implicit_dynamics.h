@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Overdamped dynamics where equilibrium ends: dashpots at all pairs, in proportion to
 // their stiffness, slow the way to the next equilibrium.
-#ifndef CRAQUELURE_IMPLICIT_DYNAMICS_H
-#define CRAQUELURE_IMPLICIT_DYNAMICS_H
+#pragma once
 
 #include "large_state.h"
 
@@ -13,5 +12,3 @@ void perturb_along_mode(struct quasi_static *qs);
 // on the way break, one a step, and fragments that nothing holds leave when they are
 // far from START (n). False: no rest.
 bool follow_dynamics(struct quasi_static *qs, const struct displacement *start);
-
-#endif

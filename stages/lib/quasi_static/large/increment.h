@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One increment: to the equilibrium under the present load factor, near the last one.
-#ifndef CRAQUELURE_INCREMENT_H
-#define CRAQUELURE_INCREMENT_H
+#pragma once
 
 #include "large_state.h"
 
@@ -19,5 +18,3 @@ enum advance advance_increment(struct quasi_static *qs, double damping, double *
 
 // Newton's method, as struct kinematics says.
 bool solve_increment(struct quasi_static *qs);
-
-#endif

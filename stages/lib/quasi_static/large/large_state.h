@@ -7,8 +7,7 @@
 // [load_stepping.c, increment.c]. Where the tangent is no longer positive, equilibrium
 // is at a limit point: grains buckle or snap through, and dynamics follows them to the
 // next equilibrium [implicit_dynamics.c].
-#ifndef CRAQUELURE_LARGE_STATE_H
-#define CRAQUELURE_LARGE_STATE_H
+#pragma once
 
 #include "pair_frame.h"
 #include "quasi_static/quasi_static_internal.h"
@@ -44,5 +43,3 @@ struct displacement displacement_since_previous(const struct quasi_static *qs,
 
 // The frames and the geometric stiffness of the pairs become those of the iterate.
 void large_linearise(struct quasi_static *qs);
-
-#endif

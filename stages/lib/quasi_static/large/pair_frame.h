@@ -2,8 +2,7 @@
 // Deformation and geometric stiffness of a pair whose grains move and turn far: a frame
 // that turns with the pair, as the discrete elements have it [K 4.13-4.17], followed
 // from one equilibrium to the next.
-#ifndef CRAQUELURE_PAIR_FRAME_H
-#define CRAQUELURE_PAIR_FRAME_H
+#pragma once
 
 #include "quasi_static/contact_pair.h"
 
@@ -43,5 +42,3 @@ struct pair_stiffness {
 void geometric_stiffness(const struct contact_pair *pair,
                          const struct pair_frame *frame, const double load[COMPONENTS],
                          struct pair_stiffness *stiffness);
-
-#endif

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mode of the lowest stiffness, into `step`; the grain that moves or turns most in
 // it, by 1, is returned.
-#ifndef CRAQUELURE_SOFTEST_MODE_H
-#define CRAQUELURE_SOFTEST_MODE_H
+#pragma once
 
 #include "large_state.h"
 
@@ -28,5 +27,3 @@ static inline int normalise_mode(struct quasi_static *qs)
         qs->step[i] = displacement_scaled(1 / size, qs->step[i]);
     return softest;
 }
-
-#endif

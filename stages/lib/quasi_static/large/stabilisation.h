@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the factor of a body that nothing holds needs to be positive where the body is
 // stable.
-#ifndef CRAQUELURE_STABILISATION_H
-#define CRAQUELURE_STABILISATION_H
+#pragma once
 
 #include "large_state.h"
 
@@ -15,5 +14,3 @@ double find_stabilisation(const struct quasi_static *qs);
 void subtract_geometric_load(const struct quasi_static *qs,
                              const struct displacement *moved,
                              struct displacement *residual);
-
-#endif

@@ -3,8 +3,7 @@
 // grains and contacts that finds which contacts open, stick and slip
 // [contact_splitting.c], then Newton's method, which ends it [coupled_newton.c]. Both
 // with dashpots on grains where there is no equilibrium near [settle.c].
-#ifndef CRAQUELURE_SPLITTING_H
-#define CRAQUELURE_SPLITTING_H
+#pragma once
 
 #include "../quasi_static_internal.h"
 
@@ -17,5 +16,3 @@ bool settle(struct quasi_static *qs);
 // The iterate keeps nothing else from load to load but which pairs are near: dropped
 // here with the cache.
 void splitting_free(struct splitting *splitting);
-
-#endif

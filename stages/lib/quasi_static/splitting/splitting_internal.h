@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Inside struct splitting, for the files of this folder only. Units of the engine.
-#ifndef CRAQUELURE_SPLITTING_INTERNAL_H
-#define CRAQUELURE_SPLITTING_INTERNAL_H
+#pragma once
 
 #include "sparse/anderson_normal.h"
 #include "splitting.h"
@@ -55,5 +54,3 @@ struct splitting *splitting_create(struct quasi_static *qs);
 // Pairs that have come near join the others; both matrices get a new pattern. False:
 // none has.
 bool add_near_pairs(struct quasi_static *qs, struct splitting *s);
-
-#endif
