@@ -38,8 +38,8 @@ def ring(rng, n):
     return r, z, out, along, r[:, None] * out + np.stack([0 * z, 0 * z, z], 1)
 
 
-def stressed(x, r, z, out, along, volume):
-    """Three contacts about each point X, one along each local direction: (3, n, 3) directions and
+def stressed(z, out, along, volume):
+    """Three contacts about each point, one along each local direction: (3, n, 3) directions and
     forces, whose products times the diameter are the stress of VOLUME."""
     up = np.zeros_like(out) + [0, 0, 1.0]
     pressure = (WEIGHT * (HEIGHT - z) + 5)[:, None]
@@ -59,7 +59,7 @@ def make(path, seed, n=6000, snapshots=6, noise=0.02, rate=RATE, inner=False, sp
         r, z, out, along, x = ring(rng, n)
         share = turned(r - shift, z)
         share = (1 - share if inner else share) + noise * rng.normal(size=n)
-        branch, force = (a.reshape(-1, 3) for a in stressed(x, r, z, out, along, volume))
+        branch, force = (a.reshape(-1, 3) for a in stressed(z, out, along, volume))
         middle = np.tile(x, (3, 1))
         places.append(np.concatenate([x, middle - RADIUS * branch, middle + RADIUS * branch]))
         speeds.append(np.concatenate([(rate * share * r)[:, None] * along, np.zeros((6 * n, 3))]))

@@ -41,7 +41,7 @@ def firsts(plan, report):
     return of.values()
 
 
-def write_reports(plan, rows, folder):
+def write_reports(plan, folder):
     """Calls the programs of the study whose artifacts are there; gives the names of what they wrote."""
     written = []
     for report in plan.study.said.get("reports", []):

@@ -7,7 +7,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from motions import Contacts, write_motion
-from refusals import BAD_DATA, USAGE, done, refused
+from refusals import BAD_DATA, done, refused
 from tap import sets
 
 GRAINS = np.array([[0.0, 0, 0], [1, 0, 0], [2, 1, 0.5]])

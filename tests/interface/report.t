@@ -20,7 +20,7 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from browser import MISSING, Browser
-from tap import BIN, CYCLES, SCENE, done, ok, read, run, scratch
+from tap import BIN, SCENE, done, ok, read, run, scratch
 
 folder = scratch()
 at = lambda name: os.path.join(folder.name, name)

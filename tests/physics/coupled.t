@@ -17,7 +17,6 @@ sys.path.insert(0, "tests")
 from tap import BIN, done, ok, run, scratch, sets
 
 SOFT = "samples/soft-10x5x5.json"
-COUNTS = ["--set", "counts=[5,4,4]"]
 
 with scratch() as folder:
     at = lambda name: os.path.join(folder, name)

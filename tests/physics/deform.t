@@ -12,7 +12,6 @@ import numpy as np
 sys.path.insert(0, "tests")
 from tap import BIN, done, ok, run, scratch, sets
 
-SOFT = "samples/soft-10x5x5.json"
 DATASETS = ["nodes/position", "nodes/kind", "throats/nodes", "throats/radius", "throats/length",
             "throats/volume", "faces/offset", "faces/nodes", "faces/particles", "domain/lower",
             "domain/upper", "particles/position", "throats/image", "faces/node_image",

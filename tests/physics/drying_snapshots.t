@@ -6,7 +6,6 @@ import os
 import sys
 
 import h5py
-import numpy as np
 
 sys.path.insert(0, "tests")
 from tap import SCENE, done, ok, run, scratch, sets

@@ -31,7 +31,7 @@ REPLAY = {"density": 2500, "normal_stiffness": 10, "shear_stiffness": 10,
           "tolerance": 1e-9, "snapshots": [0.5, 0]}
 
 
-def replay(path, at, *settings, scene=None):
+def replay(path, at, *settings):
     run("dem-replay", "-q", "-p", at("layer.json"), *settings, at("layer.h5"), "-o", path)
     return h5py.File(path)
 

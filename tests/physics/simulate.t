@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch
+from tap import BIN, done, ok, run, scratch
 
 folder = scratch()
 at = lambda name: os.path.join(folder.name, name)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What dem-replay holds and what it bonds: by sides, list and region; listed, touching and by
 # distance; strengths from a seed. The artifact says all of it.
-import json
 import os
 import subprocess
 import sys

@@ -11,7 +11,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, "tests")
-from diagram import Diagram, tessellate
+from diagram import tessellate
 from tap import BIN, done, ok, scratch
 
 random = np.random.default_rng(5)

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The cells of Poisson points, in a box that repeats so that none is cut, beside their exact
 # means: Meijering's faces, vertices and edges.
-import os
 import sys
 
 import numpy as np

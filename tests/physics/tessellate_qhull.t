@@ -7,7 +7,6 @@ import shutil
 import subprocess
 import sys
 
-import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
