@@ -7,12 +7,11 @@ and time, and rigid bodies that slide throughout.
 """
 import json
 import math
-import os
 
 import h5py
 import numpy as np
 
-from tap import run, scratch
+from tap import run, scratch_paths
 
 
 def material(young_modulus, poisson_ratio, density, restitution=1, friction=0):
@@ -73,8 +72,7 @@ class Outcome:
     """Of IMPACT in STEPS time steps a contact: force, overlap, time; velocities and spins after."""
 
     def __init__(self, impact, steps):
-        with scratch() as folder:
-            at = lambda name: os.path.join(folder, name)
+        with scratch_paths() as at:
             far = 8 * (impact.radius + (impact.below or 0))
             grains = [[0, 0, impact.radius, impact.radius]]
             if impact.below:

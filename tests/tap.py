@@ -53,6 +53,19 @@ def scratch():
     return tempfile.TemporaryDirectory(prefix="craquelure-test-")
 
 
+class scratch_paths(tempfile.TemporaryDirectory):
+    """The same; called with a name it gives the path of that in it."""
+
+    def __init__(self):
+        super().__init__(prefix="craquelure-test-")
+
+    def __enter__(self):
+        return self
+
+    def __call__(self, name):
+        return os.path.join(self.name, name)
+
+
 def code_blocks(text):
     """The indented blocks of a page, in their order, without the indent."""
     for block in re.finditer(r"(?:^    .*\n|^\n(?=    ))+", text, re.M):

@@ -12,10 +12,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def text(name, position, radius):

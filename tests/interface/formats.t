@@ -3,7 +3,6 @@
 # Networks in the formats of OpenPNM and Statoil: what is written is what those programs read,
 # and read back it is the same network.
 import json
-import os
 import subprocess
 import sys
 
@@ -11,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, read, run, scratch
+from tap import BIN, SCENE, done, ok, read, run, scratch_paths
 
 GROUPS = "particles", "domain", "bonds", "nodes", "throats", "faces"
 
@@ -26,8 +25,7 @@ def same(one, other, groups=GROUPS, but=()):
                and one[n].shape == other[n].shape for n in names)
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     packing = run("pack", "--quiet", "--set", "method=random_sequential", "--set", "count=80",
                   "--set", "upper=[4e-6,4e-6,3e-6]")
     tessellation = run("tessellate", "--set", "throat_volume=void", input=packing)

@@ -14,7 +14,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch
+from tap import SCENE, done, ok, run, scratch_paths
 
 def grid_of(reader, path):
     reader.SetFileName(path)
@@ -24,8 +24,7 @@ def grid_of(reader, path):
 def points(grid):
     return vtk_to_numpy(grid.GetPoints().GetData())
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     chain = [("pack", "packing"), ("tessellate", "tessellation"), ("merge-nodes", "network"),
              ("dry", "drying"), ("force-protocol", "forces"), ("dem-replay", "response")]
     before = []

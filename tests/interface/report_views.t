@@ -4,7 +4,6 @@
 Chromium grains are where straight lines lead them, contacts are those of their moment, colours and
 curves have the numbers of the artifact."""
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -15,10 +14,9 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from browser import MISSING, Browser
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch_paths
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def refused(*words):

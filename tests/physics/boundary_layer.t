@@ -4,7 +4,6 @@
 # and in space, truncated and with cut cells left out, open on any side, on nodes of the
 # surface or of an auxiliary layer. While all of the surface is wet the rate is that of
 # diffusion in one dimension, whatever the network: D M p_g/(R T eps) A ln(p_g/(p_g - p_v)).
-import os
 import subprocess
 import sys
 
@@ -12,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, WATER, done, ok, run, scratch, sets
+from tap import BIN, WATER, done, ok, run, scratch_paths, sets
 
 DIFFUSIVITY, GAS, FALL = 2.5685e-5, 8.31446261815324, -np.log1p(-2339 / 1e5)
 DENSITY = 1e5 * 0.01802 / (GAS * 293.15)
@@ -48,9 +47,7 @@ class Network:
         return np.intersect1d(self.wet, self.ends[self.kind == 1])
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def make(name, pack, *tessellate, threshold=0.1, grains=None):
         """What the stages make, and the network as it is."""
         run("pack", "--quiet", *sets("bonds=none", *pack), *(grains or []), "-o", at("p"))

@@ -9,13 +9,9 @@ import sys
 from math import pi
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, scratch
+from tap import BIN, done, ok, scratch_paths
 
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def calibrate(scene, *wanted, program="calibrate", axes="z", programs=BIN):

@@ -17,7 +17,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 RADIUS, SIDE, TENSION = 0.26e-6, 6, 0.07
 ENTRY = 2 * TENSION / ((math.sqrt(2) - 1) * RADIUS)
@@ -41,10 +41,7 @@ def near(got, wanted, tolerance):
     return np.max(np.abs(got - wanted)) <= tolerance * np.max(np.abs(wanted))
 
 
-with scratch() as folder:
-    def at(name):
-        return os.path.join(folder, name)
-
+with scratch_paths() as at:
     def replay(name, *settings, packing="layer.h5"):
         run("dem-replay", "-q", "-p", at("layer.json"), *sets(*settings), at(packing), "-o", at(name))
         return h5py.File(at(name))

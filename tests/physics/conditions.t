@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 # IAPWS-95, Wagner and Pruss (2002), table 13.1, at 20 and 60 degrees Celsius.
 ROOM, WARM = 293.15, 333.15
@@ -25,8 +25,7 @@ def says(*command):
     return result.returncode, result.stderr
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", *sets("counts=[4,4,4]", "radius=2.5e-7"), "-o", at("p"))
     run("tessellate", at("p"), "-o", at("t"))
     run("merge-nodes", at("t"), "-o", at("n"))

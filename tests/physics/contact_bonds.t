@@ -3,7 +3,6 @@
 # Contact bonds in dem-replay [K 4.2, 5.10]: a soft aggregate shrinks by its springs and comes
 # back; the strength is a force.
 import json
-import os
 import re
 import subprocess
 import sys
@@ -12,12 +11,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 SOFT = "samples/soft-10x5x5.json"
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     network = run("merge-nodes", "-p", SOFT, input=run("tessellate", "-p", SOFT, input=run(
         "pack", "-p", SOFT, "--set", "counts=[4,3,3]")))
     drying = run("dry", "-p", SOFT, input=network)

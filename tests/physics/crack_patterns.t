@@ -3,14 +3,13 @@
 # Crack patterns of layers that were cut by hand: a square grid, bricks, stripes, random
 # damage and cuts that do not reach the floor. What comes out is known beforehand.
 import json
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch_paths
 
 SIDE, HEIGHT, RADIUS = 48, 6, 0.3e-6  # of which multiples round: bonds lie on the borders of columns
 D = 2 * RADIUS
@@ -25,10 +24,7 @@ def near(got, wanted, tolerance=1e-9):
     return abs(got - wanted) <= tolerance * abs(wanted)
 
 
-with scratch() as folder:
-    def at(name):
-        return os.path.join(folder, name)
-
+with scratch_paths() as at:
     with open(at("scene.json"), "w") as file:
         json.dump(SCENE, file)
     run("pack", "-q", "-p", at("scene.json"), "-o", at("p.h5"))

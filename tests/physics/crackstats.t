@@ -3,7 +3,6 @@
 # crackstats on responses made by hand: counts, borders of classes, many runs, tests of two
 # groups against published outcomes, and the liquid of slices against sums over the throats.
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -12,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch, sets
+from tap import BIN, SCENE, done, ok, run, scratch_paths, sets
 
 
 def crackstats(*arguments):
@@ -45,8 +44,7 @@ def modes(entry):
     return entry["normal"], entry["shear"], entry["total"]
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "--set", "counts=[3,3,5]", "-o", at("packing"))
     run("tessellate", at("packing"), "-o", at("tessellation"))
     run("merge-nodes", at("tessellation"), "-o", at("network"))

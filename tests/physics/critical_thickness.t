@@ -14,7 +14,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 sys.path[:0] = ["pipelines/lib", "pipelines/studies/critical-thickness"]
 import criterion
@@ -76,10 +76,7 @@ SCENE = {"pack": {"method": "cubic", "radius": RADIUS, "counts": [SIDE, SIDE, SI
                                  "shear_strength": 1e12, "radius_fraction": 0.5},
                         "shrinkage": {"strain": 0.01, "steps": 40}, "cycles": 256, "ramp": 0, "tolerance": 1e-6,
                         "snapshots": [0]}}
-with scratch() as folder:
-    def at(name):
-        return os.path.join(folder, name)
-
+with scratch_paths() as at:
     with open(at("layer.json"), "w", encoding="utf-8") as file:
         json.dump(SCENE, file)
     os.mkdir(at("6-1"))

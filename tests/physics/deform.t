@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 DATASETS = ["nodes/position", "nodes/kind", "throats/nodes", "throats/radius", "throats/length",
             "throats/volume", "faces/offset", "faces/nodes", "faces/particles", "domain/lower",
@@ -18,9 +18,7 @@ DATASETS = ["nodes/position", "nodes/kind", "throats/nodes", "throats/radius", "
             "throats/diffusive_conductance", "throats/hydraulic_conductance", "throats/hydraulic_radius"]
 BODIES = ["domain/bodies/lower", "domain/bodies/upper"]
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def make(name, pack, tessellate=(), merge=None):
         """A packing, its network, and a response to lay displacements into."""
         run("pack", "--quiet", *sets(*pack), "-o", at("packing"))

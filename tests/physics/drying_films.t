@@ -3,7 +3,6 @@
 # Films of finite resistance in `dry`: their books, their two limits (rings that nothing joins, films without
 # resistance), what sizes and rates do to their reach, and what is refused.
 import filecmp
-import os
 import subprocess
 import sys
 
@@ -12,14 +11,10 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from ring_books import stores
-from tap import BIN, WATER, done, ok, run, scratch, sets
+from tap import BIN, WATER, done, ok, run, scratch_paths, sets
 
 R = 1e-6
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def network(name, radius):

@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Drying where the box repeats to the sides, and of layers of grains: the first rate, and what
 # must not change when the box begins elsewhere or is taken twice.
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import WATER, done, ok, run, scratch, sets
+from tap import WATER, done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     gas, fall = 8.31446261815324, np.log(1e5 / (1e5 - 2339))
 
     def network(name, centres, radii, box, periodic, *how):

@@ -4,7 +4,6 @@
 # against `rings`, and drying without any against drying that has no rings.
 import filecmp
 import json
-import os
 import subprocess
 import sys
 
@@ -13,14 +12,10 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from ring_books import stores
-from tap import BIN, WATER, done, ok, run, scratch, sets
+from tap import BIN, WATER, done, ok, run, scratch_paths, sets
 
 R = 1e-6
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def network(packing, name="network"):

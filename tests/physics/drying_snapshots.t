@@ -2,16 +2,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Snapshots of a drying that stops early: the pressures at the stop are those that the same
 # drying has there when it goes on.
-import os
 import sys
 
 import h5py
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch, sets
+from tap import SCENE, done, ok, run, scratch_paths, sets
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 scene = ["-q", "-p", SCENE]
 network = run("merge-nodes", *scene, input=run("tessellate", *scene, input=run("pack", *scene, *sets("counts=[3,3,4]"))))
 

@@ -3,16 +3,14 @@
 # Equilibria of settled grains of unequal size, with friction, as their bonds break: the loads
 # that Newton's method does not balance at once come to rest by steps in time. (With dashpots at
 # pairs alone, and never less than a hundredth of the stiffness, 54 of these 100 loads did not.)
-import os
 import sys
 
 import h5py
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 SIZES = sets("count=200", "radius=30e-6", "sizes.distribution=normal", "sizes.spread=0.2", "sizes.smallest=18e-6",
              "sizes.largest=42e-6", "seed=2")
 BODY = sets("density=2500", "normal_stiffness=3.6e6", "shear_stiffness=3.6e6", "bond.normal_stiffness=6.7e12",

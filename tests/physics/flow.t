@@ -4,7 +4,6 @@
 # Yade's FlowEngine (flow_reference/), and what must hold of any flow: what flows in flows
 # out, forces sum to the pressure drop times the section, the tensor is symmetric.
 import csv
-import os
 import shutil
 import subprocess
 import sys
@@ -13,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 REFERENCE = "tests/physics/flow_reference/"
 
@@ -72,9 +71,7 @@ def cells_by_corners(result):
     return {tuple(sorted(c)): p for c, p in zip(corners, result["pores/pressure"][:])}
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     header, rows = table("summary.csv")
     expected = {(r[0], r[1], r[2]): float(r[header.index("K_ref")]) for r in rows}
     for name in ("packing_200_r0.9", "packing_2000_r0.9"):

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # flow with conductance=section: the same void as a pore network of open sections, whose permeability is
 # found here from tessellate's conductances; a lattice in a box of mirrors; published flow through beds.
-import os
 import sys
 
 import h5py
@@ -12,13 +11,12 @@ sys.path[:0] = ["tests", "tests/bench/void"]
 import published
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 LOGNORMAL = ["sizes.distribution=lognormal", "sizes.spread=0.3", "sizes.smallest=0.4e-6", "sizes.largest=2.2e-6"]
 JAMMED = ["method=radius_expansion", "count=300", "radius=1e-6", "dynamics.friction=0", "bonds=none", "seed=5"]
 PERIODIC = "periodic=[true,true,true]"
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def pack(name, *settings):

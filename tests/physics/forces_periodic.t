@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Capillary forces where the box repeats, and in layers: none while all is wet, the same
 # wherever the box begins, and in a layer the sum over throats of [K 3.21].
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     steps = 40
 
     every = ["form=faces", "contact_angle=30", "pressure=clusters", "rings.left=suction"]

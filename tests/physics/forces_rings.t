@@ -4,7 +4,6 @@
 # forces without, against the exact bridge (the program `bridge`) of the volume that is left.
 import filecmp
 import json
-import os
 import subprocess
 import sys
 
@@ -12,14 +11,10 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, WATER, done, ok, run, scratch, sets
+from tap import BIN, WATER, done, ok, run, scratch_paths, sets
 
 R, TENSION = 1e-6, 0.07274
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def dried(packing, *settings):

@@ -3,14 +3,13 @@
 # Three grains in a column, the lowest held: what a fragment that came loose still bears, how the
 # moment in a bond counts in its strength, and which engine engine=auto takes. Closed forms.
 import math
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch, sets
+from tap import SCENE, done, ok, run, scratch_paths, sets
 
 RADIUS = 250e-9
 NECK = 0.5858 * RADIUS
@@ -18,8 +17,7 @@ AREA = math.pi * NECK ** 2
 COMMON = ("support=fixed", "friction=0.5", "cycles=2000", "ramp=0", "tolerance=1e-6",
           "most_cycles=100000", "unsettled=count", "density_scaling=true")
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     column = run("pack", "-p", SCENE, "--set", "counts=[1,1,3]")
     with open(at("column"), "wb") as file:
         file.write(column)

@@ -3,7 +3,6 @@
 # Equilibria without friction in which thousands of contacts open at once: a cubic lattice that is pulled along
 # x and z, whose chains of bonds stretch as springs in series do; and grains that settled, whose only
 # equilibrium is found in one load and in twenty.
-import os
 import sys
 from math import pi
 
@@ -11,14 +10,13 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 R, STIFFNESS = 1e-6, 1e14
 BONDS = sets("bond.normal_strength=1e30", "bond.shear_strength=1e30", f"bond.normal_stiffness={STIFFNESS}",
              f"bond.shear_stiffness={STIFFNESS}", "bond.radius_fraction=0.5", "normal_stiffness=1e6", "friction=0",
              "engine=quasi-static", "quasi_static.tolerance=1e-11", "support=free", "gravity=0", "snapshots=[0]")
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def equilibrium(pull, loads):

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch, sets
+from tap import BIN, done, ok, read, run, scratch_paths, sets
 
 TENSION, DENSITY = 0.07274, 998.2
 
@@ -106,8 +106,7 @@ def check(name, file, rule, trapping, gravity, pores):
            f"{name}: nothing stays where nothing is trapped")
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "--quiet", "--set", "method=random_sequential", "--set", "count=150", "--set",
         "upper=[4e-6,4e-6,5e-6]", "-o", at("packing.h5"))
     run("tessellate", at("packing.h5"), "-o", at("tessellation.h5"))

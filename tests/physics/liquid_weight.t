@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The weight of the liquid in forces: all of it at any saturation, each grain what its own cell
 # holds, buoyancy in a full body at rest, and what the support of a replay bears.
-import os
 import subprocess
 import sys
 
@@ -10,14 +9,12 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 G, RHO = 9.81, 998.2
 CLOSED = 'imposed_empty=["-x","+x","-y","+y","-z"]'
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def network(name, pack, volume="void", *merge):
         made = run("pack", "-q", *sets(*pack))
         made = run("tessellate", *sets(f"throat_volume={volume}"), input=made)

@@ -12,10 +12,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch, sets
+from tap import BIN, done, ok, read, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     open_ = lambda name: h5py.File(at(name))
     radius = 250e-9
 

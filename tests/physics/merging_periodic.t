@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Merging where the box repeats, and in layers: lattices come out as the networks of their
 # holes, node for node and throat for throat; random networks stay closed.
-import os
 import sys
 from collections import Counter
 from itertools import product
@@ -11,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 root = np.sqrt
 hcp_atoms = [(0, 0, 0), (1/2, 1/2, 0), (1/2, 1/6, 1/2), (0, 2/3, 1/2)]
@@ -78,9 +77,7 @@ def closed(file):
                           for (p, a, at_a, b, at_b), n in edges.items()), len(throats) == len(ends)
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def network(centres, radii, box, periodic, tessellate=(), merge=()):
         np.savetxt(at("grains"), np.column_stack([centres, radii]), fmt="%.17g")
         sides = "[" + ",".join(["false", "true"][int(p)] for p in periodic) + "]"

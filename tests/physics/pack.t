@@ -1,18 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Lattices with the bonds their geometry demands, and grains that come from elsewhere.
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def pack(name, *settings, **more):
         run("pack", *sets(*settings), *more.get("inputs", []), "-o", at(name))
         return h5py.File(at(name))

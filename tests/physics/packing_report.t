@@ -11,11 +11,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def pack(name, *settings, inputs=()):
         run("pack", *sets(*settings), *inputs, "-o", at(name), "--report", at(name + ".json"))
         with open(at(name + ".json")) as file:

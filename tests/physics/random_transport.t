@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Diffusivity and permeability of random packings, equal and polydisperse, against published bounds
 # and fits. The network is solved here, not by a stage.
-import os
 import sys
 
 import h5py
@@ -12,7 +11,7 @@ sys.path[:0] = ["tests", "tests/bench/void"]
 import published
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 LOGNORMAL = ["sizes.distribution=lognormal", "sizes.spread=0.3", "sizes.smallest=0.4e-6", "sizes.largest=2.2e-6"]
 CASES = {"equal, jammed": [],
@@ -22,8 +21,7 @@ CASES = {"equal, jammed": [],
 
 
 for title, how in CASES.items():
-    with scratch() as folder:
-        at = lambda name: os.path.join(folder, name)
+    with scratch_paths() as at:
         run("pack", "-q", *sets("method=radius_expansion", "count=400", "radius=1e-6", "periodic=[true,true,true]",
                                 "dynamics.friction=0", "bonds=none", "seed=3",
                                 *how),

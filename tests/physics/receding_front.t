@@ -8,7 +8,6 @@
 #     rate = drive / (a + z),  z^2 / 2 + a z = drive t / (porosity density),
 #     drive = D_eff (p M / R T) ln(p / (p - p_v)),
 # a is what the air above resists. The slopes of 1/rate over z and of t over z^2 / 2 give D_eff.
-import os
 import sys
 
 import h5py
@@ -17,7 +16,7 @@ import numpy as np
 sys.path[:0] = ["tests", "tests/bench/void"]
 from network_rules import Network
 from network_solve import Balance
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 COPIES = 5
 DIFFUSIVITY, PRESSURE, VAPOUR, MOLAR_MASS = 2.5685e-5, 1e5, 2339, 18.02e-3
@@ -45,8 +44,7 @@ def stack(cell, out):
 
 
 for seed in 1, 2:
-    with scratch() as folder:
-        at = lambda name: os.path.join(folder, name)
+    with scratch_paths() as at:
         run("pack", "-q", *sets("method=radius_expansion", "count=250", "radius=250e-9", "periodic=[true,true,true]",
                                 "dynamics.friction=0", "bonds=none", f"seed={seed}"), "-o", at("cell.h5"))
         run("tessellate", "-q", at("cell.h5"), "-o", at("cell-network.h5"))

@@ -4,7 +4,6 @@
 # same throats empty at the same times, gas is pressed in in the same order, and grains that move
 # leave the same liquid in every throat. Throats that are narrowest at a node they share are
 # equally wide.
-import os
 import shutil
 import sys
 
@@ -12,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 
 def renumber(source, target, random):
@@ -32,8 +31,7 @@ def renumber(source, target, random):
     return was
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "--quiet", "--set", "method=deposition", "--set", "count=120", "--set",
         "radius=250e-9", "-o", at("packing.h5"))
     run("tessellate", at("packing.h5"), "-o", at("tessellation.h5"))

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # An aggregate that repeats to the sides [K 4.5, 5.9] is bonded across them, and cracks there as
 # elsewhere: the same bonds break when the box begins elsewhere.
-import os
 import shutil
 import sys
 
@@ -10,10 +9,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import CYCLES, SCENE, done, ok, run, scratch, sets
+from tap import CYCLES, SCENE, done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "-p", SCENE, *sets("periodic=[true,true,false]", "counts=[4,4,5]"), "-o", at("p"))
     run("tessellate", "-p", SCENE, at("p"), "-o", at("t"))
     run("merge-nodes", "-p", SCENE, at("t"), "-o", at("n"))

@@ -5,7 +5,6 @@
 # fly apart the response lists the bridges between them, as the exact solution has them.
 import glob
 import json
-import os
 import subprocess
 import sys
 
@@ -13,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch, sets
+from tap import BIN, SCENE, done, ok, run, scratch_paths, sets
 
 STIFFNESS, BOND, SHARE, TENSION, VOLUME = 100.0, 8e13, 0.5858, 0.07, 1e-24
 wet = [f"normal_stiffness={STIFFNESS}", f"shear_stiffness={STIFFNESS}",
@@ -22,8 +21,7 @@ wet = [f"normal_stiffness={STIFFNESS}", f"shear_stiffness={STIFFNESS}",
        f"bridges.volume={VOLUME}", f"bridges.surface_tension={TENSION}",
        "bridges.contact_angle=30", "support=free", "time_step_safety=0.02", "cycles=4000"]
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "-p", SCENE, *sets("counts=[3,3,3]"), "-o", at("p"))
     run("tessellate", "-p", SCENE, at("p"), "-o", at("t"))
     run("merge-nodes", "-p", SCENE, at("t"), "-o", at("n"))

@@ -4,7 +4,6 @@
 # over a lattice in closed form, and the suction at which three rings meet.
 import filecmp
 import json
-import os
 import subprocess
 import sys
 from math import asin, cos, pi, radians, sin
@@ -12,14 +11,10 @@ from math import asin, cos, pi, radians, sin
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 R, TENSION = 1e-6, 0.07
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def packing(name, grains, upper, *settings):

@@ -4,7 +4,6 @@
 # gaps of the packing, which knows no network.
 import filecmp
 import json
-import os
 import subprocess
 import sys
 
@@ -12,15 +11,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 R, TENSION = 1e-6, 0.07
 LIQUID = "fluid=other", f"surface_tension={TENSION}"
-folder = scratch()
-
-
-def at(name):
-    return os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def network(name, packing, angle=0):

@@ -11,10 +11,9 @@ import numpy as np
 sys.path.insert(0, "tests")
 import split_cell as cell
 from motions import Contacts, write_motion
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch_paths
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 
 
 def stats(motions, **settings):

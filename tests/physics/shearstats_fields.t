@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """shearstats against closed forms: conservation, rigid rotation, shear, lattice, column, symmetry."""
-import os
 import sys
 
 import h5py
@@ -9,10 +8,9 @@ import numpy as np
 
 sys.path.insert(0, "tests")
 from motions import Contacts, write_motion
-from tap import done, ok, run, scratch
+from tap import done, ok, run, scratch_paths
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 rng = np.random.default_rng(7)
 
 

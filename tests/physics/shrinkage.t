@@ -6,7 +6,6 @@
 # its height. Bonds along the layer break at e = strength / (k^n l).
 import json
 import math
-import os
 import shutil
 import signal
 import subprocess
@@ -17,7 +16,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch, sets
+from tap import BIN, SCENE, done, ok, run, scratch_paths, sets
 
 RADIUS, STIFFNESS, SHARE, SIDE, STRAIN = 0.26e-6, 5e13, 0.5, 6, 0.01
 AREA = math.pi * (SHARE * RADIUS) ** 2
@@ -58,10 +57,7 @@ def near(got, wanted, tolerance):
     return np.max(np.abs(got - wanted)) <= tolerance * np.max(np.abs(wanted))
 
 
-with scratch() as folder:
-    def at(name):
-        return os.path.join(folder, name)
-
+with scratch_paths() as at:
     with open(at("layer.json"), "w") as file:
         json.dump({"pack": PACK, "dem-replay": REPLAY}, file)
     run("pack", "-q", "-p", at("layer.json"), "-o", at("layer.h5"))

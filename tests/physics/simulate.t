@@ -12,10 +12,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch
+from tap import BIN, done, ok, run, scratch_paths
 
-folder = scratch()
-at = lambda name: os.path.join(folder.name, name)
+at = scratch_paths()
 SOFT = {"glass": {"density": 2500, "young_modulus": 1e7, "poisson_ratio": 0.25, "friction": 0.5,
                   "restitution": 0.7}}
 

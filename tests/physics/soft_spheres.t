@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, read, run, scratch, sets
+from tap import BIN, done, ok, read, run, scratch_paths, sets
 
 R = 1e-6
 EDGE = np.array([16 * R, 14 * R, 18 * R])
@@ -40,10 +40,7 @@ def refused(*settings):
     return process.returncode == 65 and process.stderr.count("\n") == 1
 
 
-with scratch() as folder:
-    def at(name):
-        return os.path.join(folder, name)
-
+with scratch_paths() as at:
     scene = at("scene.json")
     with open(scene, "w") as file:
         json.dump({"pack": PACK}, file)

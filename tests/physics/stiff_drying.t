@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The stiff aggregate dries in K's two limits [K 5.4], and what that does to the forces.
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch
+from tap import SCENE, done, ok, run, scratch_paths
 
 # [K Table 3.1], and beta = 5.1 m/s: a boundary layer of 5.04 um over 25 grains' width.
 diffusivity, molar_mass, temperature, gas, vapour = 2.5685e-5, 18.02e-3, 293.15, 1e5, 2339
@@ -16,8 +15,7 @@ area = 25 * 500e-9**2
 closed_form = (area * 5.1 * gas * molar_mass / (8.31446261815324 * temperature)
                * -np.log1p(-vapour / gas))
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     network = run("merge-nodes", "-p", SCENE,
                   input=run("tessellate", "-p", SCENE, input=run("pack", "-p", SCENE)))
     history = {}

@@ -2,17 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The pore network of the stiff aggregate [K 5.1], out of an exactly degenerate lattice: 8
 # cospherical grains around every void.
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch
+from tap import SCENE, done, ok, run, scratch_paths
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     run("pack", "-p", SCENE, "-o", at("packing.h5"))
     run("tessellate", "-p", SCENE, at("packing.h5"), "-o", at("tessellation.h5"))
     run("merge-nodes", "-p", SCENE, at("tessellation.h5"), "-o", at("network.h5"))

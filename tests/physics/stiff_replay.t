@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch, sets
+from tap import SCENE, done, ok, run, scratch_paths, sets
 
 SCALE = 1.3333 # of the force, as in the sample
 HELD = ("support=fixed", "engine=quasi-static") # nothing turns as one
@@ -22,8 +22,7 @@ def counts(path):
     return json.loads(run("crackstats", "-p", SCENE, path))
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     network = run("merge-nodes", "-p", SCENE,
                   input=run("tessellate", "-p", SCENE, input=run("pack", "-p", SCENE)))
     drying = {limit: run("dry", "-p", SCENE, "--set", f"liquid={limit}", input=network)

@@ -10,12 +10,11 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, CYCLES, SCENE, done, ok, run, scratch, sets
+from tap import BIN, CYCLES, SCENE, done, ok, run, scratch_paths, sets
 
 HELD = (*CYCLES, "support=fixed")
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     small = ("pack", "-p", SCENE, "--set", "counts=[4,4,4]")
     network = run("merge-nodes", "-p", SCENE, input=run("tessellate", "-p", SCENE,
                                                         input=run(*small)))

@@ -2,14 +2,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What throats conduct as open sections (tessellate conductance=section), through the whole chain:
 # the empty box, closed forms and published values of lattices, and what must not matter.
-import os
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import done, ok, run, scratch, sets
+from tap import done, ok, run, scratch_paths, sets
 
 SHAPES = "diffusive_conductance", "hydraulic_conductance", "hydraulic_radius"
 
@@ -52,8 +51,7 @@ CELLS = {"simple cubic": ([(.5, .5, .5)], .5, {.8: .6435, .6: .8394}, 2.518e-3),
                           2 ** .5 / 4, {.8: .5210, .6: .7778}, 8.62e-5)}
 
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
+with scratch_paths() as at:
     random = np.random.default_rng(7)
 
     # Fluxes through Voronoi faces are exact for linear fields: points between walls conduct as

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Throat volumes that add up to the void between the grains, spheres cut exactly, and stay so
 # when nodes are merged and the network dries.
-import os
 import subprocess
 import sys
 
@@ -10,11 +9,9 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def tessellate(*settings, text=None):
         """The network of a packing; TEXT holds the grains of an import."""
         packing = run("pack", "--quiet", *sets(*settings), input=text)

@@ -4,7 +4,6 @@
 # what the support bears, that it is at rest before drying begins, what it breaks alone, and
 # the Bond numbers.
 import json
-import os
 import subprocess
 import sys
 
@@ -14,7 +13,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch, sets
+from tap import BIN, done, ok, run, scratch_paths, sets
 
 R, RHO, G = 5e-4, 2500.0, 9.81
 MASS = RHO * 4 / 3 * np.pi * R**3
@@ -27,9 +26,7 @@ MATERIAL = (f"density={RHO}", "normal_stiffness=1e4", "shear_stiffness=1e4", f"g
             "ramp=0", "tolerance=null", "local_damping=0", "damping_ratio=0.7", "density_scaling=false")
 ENGINES = "explicit", "quasi-static"
 
-with scratch() as folder:
-    at = lambda name: os.path.join(folder, name)
-
+with scratch_paths() as at:
     def pack(counts, *settings):
         run("pack", *sets(f"counts={counts}", f"radius={R}", *settings), "-o", at("packing"))
 
