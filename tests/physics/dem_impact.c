@@ -81,19 +81,25 @@ TEST(3_restitution)
             }
 }
 
+// Of a grain of radius 1 mm on a wall, an equal one, and a large one.
+static struct impact timed_impact(int k, double restitution)
+{
+    return (struct impact){
+        .law = DEM_TIMED,
+        .material = {.density = 2500, .contact_time = 1e-4, .restitution = restitution},
+        .radius = {1e-3, k == 0   ? 0
+                         : k == 1 ? 1e-3
+                                  : 7e-3},
+        .velocity = {{0, 0, -0.3}, {0, 0, 0.2 * (k > 0)}},
+        .time_step = 1e-4 / STEPS};
+}
+
 // Timed contacts give restitution and time as asked, between any two grains.
 TEST(timed_contact)
 {
-    const double radius[3][2] = {{1e-3, 0}, {1e-3, 1e-3}, {1e-3, 7e-3}};
     for (int k = 0; k < 3; k++)
         for (int tenths = 2; tenths <= 10; tenths++) {
-            const struct impact is = {.law = DEM_TIMED,
-                                      .material = {.density = 2500,
-                                                   .contact_time = 1e-4,
-                                                   .restitution = 0.1 * tenths},
-                                      .radius = {radius[k][0], radius[k][1]},
-                                      .velocity = {{0, 0, -0.3}, {0, 0, 0.2 * (k > 0)}},
-                                      .time_step = 1e-4 / STEPS};
+            const struct impact is = timed_impact(k, 0.1 * tenths);
             const struct outcome got = run_impact(&is);
             const double rebound = got.velocity[0].z - got.velocity[1].z;
             WITHIN(rebound / closing_speed(&is), 0.1 * tenths, 1e-3);
@@ -107,17 +113,10 @@ TEST(timed_contact)
 // exp(-b t) of that before (Schwager & Poeschel 2007, Granular Matter 9, 465).
 TEST(dashpots_that_do_not_pull)
 {
-    const double radius[3][2] = {{1e-3, 0}, {1e-3, 1e-3}, {1e-3, 7e-3}};
     for (int k = 0; k < 3; k++)
         for (int tenths = 2; tenths <= 10; tenths++) {
-            struct impact is = {.law = DEM_TIMED,
-                                .material = {.density = 2500,
-                                             .contact_time = 1e-4,
-                                             .restitution = 0.1 * tenths},
-                                .radius = {radius[k][0], radius[k][1]},
-                                .velocity = {{0, 0, -0.3}, {0, 0, 0.2 * (k > 0)}},
-                                .time_step = 1e-4 / STEPS,
-                                .no_tensile_damping = true};
+            struct impact is = timed_impact(k, 0.1 * tenths);
+            is.no_tensile_damping = true;
             const double b = -log(0.1 * tenths) / 1e-4, w = M_PI / 1e-4;
             const double t = (M_PI - atan2(2 * b * w, w * w - b * b)) / w;
             const struct outcome got = run_impact(&is);

@@ -16,21 +16,6 @@ static void pull(struct dem *dem, int turn)
     free(force);
 }
 
-static void assert_same_state(const struct dem *a, const struct dem *b)
-{
-    int n, m;
-    struct named_array *p = dem_save(a, &n), *q = dem_save(b, &m);
-    assert_int_equal(n, m);
-    for (int k = 0; k < n; k++) {
-        const size_t size = (size_t)p[k].count * number_size(p[k].type);
-        assert_int_equal(p[k].count, q[k].count);
-        if (size > 0 && memcmp(p[k].data, q[k].data, size))
-            fail_msg("cycle %d: %s differs", (int)dem_cycle(a), p[k].name);
-    }
-    free_arrays(p, n);
-    free_arrays(q, m);
-}
-
 // How many pairs are inactive at the end.
 static int inactive_now(struct dem *dem)
 {

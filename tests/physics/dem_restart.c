@@ -82,22 +82,6 @@ static void assert_same_sums(const struct dem *a, const struct dem *b)
     }
 }
 
-static void assert_same_state(const struct dem *a, const struct dem *b)
-{
-    int n, m;
-    struct named_array *p = dem_save(a, &n), *q = dem_save(b, &m);
-    assert_int_equal(n, m);
-    for (int k = 0; k < n; k++) {
-        static const size_t size[] = {8, 4, 8, 1};
-        assert_string_equal(p[k].name, q[k].name);
-        assert_int_equal(p[k].count, q[k].count);
-        assert_same(p[k].name, p[k].data, q[k].data,
-                    (size_t)p[k].count * size[p[k].type]);
-    }
-    free_arrays(p, n);
-    free_arrays(q, m);
-}
-
 static void assert_same_everything(const struct dem *a, const struct dem *b)
 {
     assert_int_equal(dem_cycle(a), dem_cycle(b));

@@ -101,6 +101,23 @@ static inline void settle(struct dem *dem, double tolerance)
         fail_msg("%s", reason.text);
 }
 
+// Every byte of the state by which one could go on as the other.
+static inline void assert_same_state(const struct dem *a, const struct dem *b)
+{
+    int n, m;
+    struct named_array *p = dem_save(a, &n), *q = dem_save(b, &m);
+    assert_int_equal(n, m);
+    for (int k = 0; k < n; k++) {
+        const size_t size = (size_t)p[k].count * number_size(p[k].type);
+        assert_string_equal(p[k].name, q[k].name);
+        assert_int_equal(p[k].count, q[k].count);
+        if (size > 0 && memcmp(p[k].data, q[k].data, size))
+            fail_msg("cycle %d: %s differs", (int)dem_cycle(a), p[k].name);
+    }
+    free_arrays(p, n);
+    free_arrays(q, m);
+}
+
 static inline struct vector displacement_of(const struct dem *dem, int particle)
 {
     struct vector *all = NEW_ARRAY(struct vector, dem->n_particle);

@@ -98,12 +98,7 @@ TEST(knudsen_resistance)
 {
     const double small = 5e-7;
     const int n = 6;
-    struct network network = lattice_network(2, 2, n + 1, small);
-    for (int t = 0; t < network.n_throat; t++) {
-        const int32_t *node = network.throat_nodes[t];
-        if (node[1] - node[0] != 4 || node[0] % 4 != 0)
-            network.throat_kind[t] = THROAT_IMPOSED_EMPTY;
-    }
+    struct network network = lattice_column(n, small);
     struct drying_conditions conditions = kharaghani_conditions(LIQUID_INVISCID);
     conditions.knudsen = true;
     struct drying_history history = dry_and_check(&network, &conditions);

@@ -3,9 +3,7 @@
 // first load of a body with weight, and gone on with: the same response to the bit, by
 // cycles and by equilibria, held, on a wall and free, where the load follows the grains
 // at some cycles only. And what overshoots on the way to rest breaks nothing.
-#include "dem_scene.h"
-#include "load_in_memory.h"
-#include "support_equilibrium.h"
+#include "pulled_pair.h"
 
 #include <math.h>
 #include <string.h>
@@ -194,34 +192,10 @@ TEST(equilibria_go_on)
 TEST(nothing_breaks_on_the_way)
 {
     for (int is_weaker = 0; is_weaker < 2; is_weaker++) {
-        struct packing packing = bonded_pair();
-        const struct dem_setup setup = stiff_setup(&packing);
-        uint8_t held[] = {1, 0};
-        double time[] = {0}, saturation[] = {1};
-        struct vector force[] = {{0, 0, 0}, {weight, 0, 0}};
-        const struct load load = {.n_time = 1,
-                                  .time = time,
-                                  .saturation = saturation,
-                                  .source = &(struct rows_in_memory){force, 2},
-                                  .force = row_in_memory};
-        struct replay_settings settings = {.material = setup.material,
-                                           .bond = setup.bond,
-                                           .held = held,
-                                           .unstressed = true,
-                                           .support = SUPPORT_FIXED,
-                                           .engine = ENGINE_EXPLICIT,
-                                           .time_step_safety = 0.002,
-                                           .cycles = 2000,
-                                           .tolerance = NAN,
-                                           .threads = 1,
-                                           .weight = force};
-        settings.material.damping_ratio = 0;
-        settings.bond.normal_strength =
-            (is_weaker ? 0.999 : 1.001) * weight / (M_PI * pow(0.5858 * RADIUS, 2));
-        struct response response = replay_or_fail(&packing, &load, &settings);
+        struct response response =
+            pull_pair(weight, is_weaker ? 0.999 : 1.001, 2000, 0, true);
         assert_int_equal(response.n_weight_crack, is_weaker);
         assert_int_equal(response.n_crack, 0);
         response_free(&response);
-        packing_free(&packing);
     }
 }
