@@ -43,6 +43,14 @@ def run(stage, *arguments, input=None):
                           stdout=subprocess.PIPE, check=True).stdout
 
 
+def refused(title, says, stage, *words, input=None):
+    """STAGE ends with 65 and one line, which SAYS why; it writes nothing, and not what follows -o in WORDS."""
+    ended = subprocess.run([f"{BIN}/{stage}", *words], input=input or b"", capture_output=True)
+    said = ended.stderr.decode()
+    left = ended.stdout or ("-o" in words and os.path.exists(words[words.index("-o") + 1]))
+    ok(ended.returncode == 65 and says in said and said.count("\n") == 1 and not left, title, f"{ended.returncode}: {said}")
+
+
 def sets(*settings):
     """The words that --set them."""
     return [word for setting in settings for word in ("--set", setting)]

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, WATER, done, ok, run, scratch_paths, sets
+from tap import BIN, WATER, done, ok, refused, run, scratch_paths, sets
 
 R, TENSION = 1e-6, 0.07274
 at = scratch_paths()
@@ -97,9 +97,8 @@ for threads in "1", "2":
 ok(filecmp.cmp(at("t1"), at("t2"), shallow=False), "one thread and two give the same bytes")
 
 dried(at("packing"))
-refused = subprocess.run([f"{BIN}/force-protocol", "-q", *sets("rings.left=drying"), at("drying")], capture_output=True, text=True, check=False)
-ok(refused.returncode == 65 and "rings.left=drying needs it: dry with rings=isolated, joined or films" in refused.stderr,
-   "a drying without rings is refused", refused.stderr)
+refused("a drying without rings is refused", "rings.left=drying needs it: dry with rings=isolated, joined or films",
+        "force-protocol", "-q", *sets("rings.left=drying"), at("drying"))
 
 # ---- rings of liquid in equilibrium that would be larger than bridges are solved for ------
 
@@ -115,5 +114,4 @@ for speck in 0.01, 0.5:
     said = subprocess.run([f"{BIN}/force-protocol", *sets("rings.left=suction", "steps=2"), at("drying"), "-o", at("forces")],
                           capture_output=True, text=True, check=True).stderr
     ok(("1 of 55 rings would hold more than the cube" in said) == (speck < 0.1), f"a speck of {speck} grains: whether its ring is cut off is said", said)
-
 done()

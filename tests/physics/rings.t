@@ -11,7 +11,7 @@ from math import asin, cos, pi, radians, sin
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch_paths, sets
+from tap import BIN, done, ok, refused, run, scratch_paths, sets
 
 R, TENSION = 1e-6, 0.07
 at = scratch_paths()
@@ -165,10 +165,7 @@ ok(all(np.diff(said["volume"]) < 0) and all(np.diff(said["rings"]) <= 0) and sai
 for settings, line in [(["suctions=[2e5,1e5]"], "rings.suctions: must be above 0 and rise, got 100000 Pa"),
                        (["to=4"], "rings.to: must be above rings.from"),
                        (["contact_angle=90"], "rings.contact_angle")]:
-    refused = subprocess.run([f"{BIN}/rings", "-q", *sets(*settings), at("random")],
-                             capture_output=True, text=True, check=False)
-    ok(refused.returncode == 65 and line in refused.stderr and refused.stderr.count("\n") == 1, f"{settings[0]} is refused",
-       refused.stderr)
+    refused(f"{settings[0]} is refused", line, "rings", "-q", *sets(*settings), at("random"))
 
 # A grain inside another is a mistake in the data, not a ring that was not found.
 for radius, is_inside in (0.3 * R, True), (R, True), (1.1 * R, False):
@@ -182,7 +179,6 @@ for radius, is_inside in (0.3 * R, True), (R, True), (1.1 * R, False):
 # Grains of an extra layer are not there: stages that take all for solid say so.
 run("pack", "-q", *sets("counts=[3,3,3]", f"radius={R}", "extra_layer=true"), "-o", at("layered"))
 for stage in "rings", "flow":
-    refused = subprocess.run([f"{BIN}/{stage}", "-q", at("layered"), "-o", at("none")], capture_output=True, text=True, check=False)
-    ok(refused.returncode == 65 and f"{stage} takes packings without an extra layer" in refused.stderr
-       and refused.stderr.count("\n") == 1, f"{stage} refuses an extra layer", refused.stderr)
+    refused(f"{stage} refuses an extra layer", f"{stage} takes packings without an extra layer",
+            stage, "-q", at("layered"), "-o", at("refused"))
 done()
