@@ -112,7 +112,7 @@ core_sources := $(filter-out %/main.c,$(foreach s,$(STAGES),$(call stage_sources
 
 # A test is a C program; test.c, its main program, and support_*.c beside it are linked into each.
 tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
-support_for = $(call object,$(wildcard tests/$1/support_*.c) $(if $(filter bench%,$1),,tests/test.c))
+support_for = $(call object,$(wildcard tests/$1/support_*.c $(if $(filter bench%,$1),,tests/test.c)))
 test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
 C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
 VOID := $(call test_programs,bench/void)
