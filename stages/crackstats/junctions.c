@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons filled to their borders (polygons.nearest) meet at corners of four columns
-// with three or more polygons around them; corners within h / 2 of each other are one
-// junction, at their mean. A circle of radius h / 2 about it, followed by angle,
-// crosses the borders; angles between crossings are those between cracks:
+// with three or more polygons around them; corners from each to the next of which it is
+// at most h / 2 are one junction, at their mean. A circle of radius h / 2 about it,
+// followed by angle, crosses the borders; angles between crossings are those between
+// cracks:
 //     T: largest above 155 degrees, Y: largest below 135 degrees.
 // Where the circle crosses fewer than three borders, or more than five (another
 // junction is near), nothing is measured.
 #include "junctions.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 
 #include <math.h>
@@ -50,17 +52,36 @@ static struct point apart(const struct columns *columns, struct point a, struct 
     return (struct point){by[0], by[1]};
 }
 
-// Takes the corners near the first that is left together; returns their mean.
-static struct point take_junction(const struct columns *columns,
-                                  const struct point *corner, bool *is_left, int n,
-                                  int first)
+// The junction of each of the N corners: its lowest corner. Sets of near pairs do not
+// depend on where the map begins or how it lies.
+static int *join_corners(const struct columns *columns, const struct point *corner,
+                         int n)
+{
+    static const double most = 1 + 1e-9;
+    int *root = NEW_ARRAY(int, n);
+    for (int k = 0; k < n; k++)
+        root[k] = k;
+    for (int k = 0; k < n; k++)
+        for (int j = 0; j < k; j++) {
+            const struct point by = apart(columns, corner[j], corner[k]);
+            if (hypot(by.x, by.y) <= most * 0.5 * columns->height)
+                unite_sets(root, j, k);
+        }
+    for (int k = 0; k < n; k++)
+        root[k] = set_root(root, k);
+    return root;
+}
+
+// The mean of the corners of the junction FIRST.
+static struct point junction_at(const struct columns *columns,
+                                const struct point *corner, const int *junction, int n,
+                                int first)
 {
     struct point sum = {0, 0};
     int count = 0;
     for (int k = first; k < n; k++) {
+        if (junction[k] != first) continue;
         const struct point by = apart(columns, corner[first], corner[k]);
-        if (!is_left[k] || hypot(by.x, by.y) > 0.5 * columns->height) continue;
-        is_left[k] = false;
         sum = (struct point){sum.x + by.x, sum.y + by.y};
         count++;
     }
@@ -110,16 +131,14 @@ struct junctions find_junctions(const struct columns *columns,
     struct junctions found = {0};
     if (polygons->none) return found;
     struct point *corner = NEW_ARRAY(struct point, columns->n);
-    bool *is_left = NEW_ARRAY(bool, columns->n);
     int n = 0;
     for (int c = 0; c < columns->n; c++)
-        if (meeting_at(columns, polygons->nearest, c) >= 3) {
-            is_left[n] = true;
+        if (meeting_at(columns, polygons->nearest, c) >= 3)
             corner[n++] = corner_of(columns, c);
-        }
+    int *junction = join_corners(columns, corner, n);
     for (int k = 0; k < n; k++) {
-        if (!is_left[k]) continue;
-        const struct point at = take_junction(columns, corner, is_left, n, k);
+        if (junction[k] != k) continue;
+        const struct point at = junction_at(columns, corner, junction, n, k);
         found.count++;
         measure(&found, largest_angle(columns, polygons->nearest, at));
     }
@@ -129,6 +148,6 @@ struct junctions find_junctions(const struct columns *columns,
         found.y_share /= found.measured;
     }
     free(corner);
-    free(is_left);
+    free(junction);
     return found;
 }

@@ -78,16 +78,17 @@ static void label_polygons(const struct columns *columns, const bool *is_crack,
 // ---- the nearest polygon ------------------------------------------------------------
 
 // The polygon of the columns R away, along x or y at most, that is nearest to COLUMN,
-// if nearer than *SQUARE; of equally near ones the first. BEST otherwise.
+// if nearer than *SQUARE; of equally near ones, to rounding, the first. BEST otherwise.
 static int nearest_in_ring(const struct columns *columns, const int *label, int column,
                            int r, int best, double *square)
 {
+    static const double nearer = 1 - 1e-9;
     for (int dy = -r; dy <= r; dy++)
         for (int dx = -r; dx <= r; dx += abs(dy) == r ? 1 : 2 * r) {
             const int other = column_beside(columns, column, dx, dy);
             if (other < 0 || label[other] < 0) continue;
             const double x = dx * columns->edge[0], y = dy * columns->edge[1];
-            if (x * x + y * y >= *square) continue;
+            if (x * x + y * y >= nearer * *square) continue;
             *square = x * x + y * y;
             best = label[other];
         }

@@ -113,6 +113,19 @@ with scratch_paths() as at:
        [shape, joints])
     ok(joints["t_share"] == 1 and joints["largest_angle"] > 165, "all of them T", joints)
 
+    def between(label):
+        """Lateral bonds between grains whose LABEL on the map differs."""
+        ends = [label[tuple(cell[bonds[:, k], :2].T)] for k in (0, 1)]
+        return lateral & (ends[0] != ends[1])
+
+    # Three junctions in a row, 2.2 diameters from each to the next and 4 from end to end: they
+    # are one, whichever comes first on the map.
+    x, y = np.indices((SIDE, SIDE))
+    above = y >= np.where((x >= 11) & (x < 13), 24, 25)
+    label = np.where(above, np.searchsorted([10, 14, 30], x, "right") % 3, 5 + (x >= 12) - (x >= 36))
+    counts = [look(between(map_))[1]["count"] for map_ in (label, label[:, ::-1])]
+    ok(counts[0] == counts[1], "a row of junctions, and the same upside down: as many", counts)
+
     # When they came: cracks across x first.
     saturation = np.where(axis == 0, 0.75, 0.25)
     shape, _, pattern = look(cut_x | cut_y, saturation=saturation)
@@ -172,4 +185,14 @@ with scratch_paths() as at:
     damage = np.array(pattern["damage"]).reshape(columns[::-1])
     ok(np.abs(smooth[0] / smooth[1] - damage).max() < 1e-3,
        "damage, as by the Fourier transform", np.abs(smooth[0] / smooth[1] - damage).max())
+
+    # Columns equally near to two polygons: rounding does not decide which of them they join.
+    label = np.floor(2 * (place[:, :2] % edge / edge).sum(axis=1)).astype(int) % 2  # slanting stripes
+    areas = []
+    for digits in 0, -1, 1:
+        with h5py.File(at("whole.h5"), "r+") as file:
+            file["domain/upper"][0] = edge[0] * (1 + digits * 1e-14)
+        areas.append(look(lateral & (label[bonds[:, 0]] != label[bonds[:, 1]]))[2]["areas"])
+    ok(len(areas[0]) == 2 and all(np.allclose(one, areas[0], rtol=1e-9, atol=0) for one in areas),
+       "a box wider by rounding: the same areas", areas)
 done()
