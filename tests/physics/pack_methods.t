@@ -61,7 +61,7 @@ for method, in_cell, solid, contacts in [
        f"each of its grains touches {contacts}")
     free = Packing(f"method={method}", "counts=[4,3,5]", "radius=3e-7")
     highest = free.x.max(axis=0) + free.r[0], free.x.min(axis=0) - free.r[0]
-    ok(len(free.r) == 60 * in_cell and np.allclose(highest[0], free.upper, rtol=1e-14)
+    ok(len(free.r) == 60 * in_cell and np.allclose(highest[0], free.upper, rtol=1e-14, atol=0)
        and np.abs(highest[1]).max() < 1e-20, "without periodic sides its box is around it")
 
 for settings, in_cell, solid, contacts in [
@@ -221,7 +221,7 @@ mixed = dump("id element xs ys zs vx diameter",
              lambda i: (i + 1, "Si", *((position[i] - lower) / edge).tolist(), 0, 2 * radius[i]),
              0, order=generator.permutation(50))
 scaled = imported(mixed)
-ok(np.allclose(scaled.x, position, rtol=0, atol=1e-14) and np.allclose(scaled.r, radius),
+ok(np.allclose(scaled.x, position, rtol=0, atol=1e-14) and np.allclose(scaled.r, radius, atol=0),
    "scaled places, diameters and words, in the order of the ids")
 unwrapped = dump("id xu yu zu radius",
                  lambda i: (i, *(position[i] + [3 * (i % 3), 0, -6]).tolist(), radius[i]), 0)
@@ -249,7 +249,7 @@ uneven = Packing("method=random_sequential", "upper=[10,10,10]", "count=300",
                  "bonds=none", "extra_layer=true")
 extra = slice(300, None)
 ok(uneven.overlap() == 0 and np.ptp(uneven.x[extra, 2]) == 0
-   and np.allclose(uneven.r[extra], uneven.r[:300].mean(), rtol=1e-14)
+   and np.allclose(uneven.r[extra], uneven.r[:300].mean(), rtol=1e-14, atol=0)
    and len(uneven.r) - 300 == int(5 / uneven.r[-1])**2,
    "on unequal grains it has their mean radius and lies on the highest")
 row = Packing("method=random_sequential", "dimensions=2", "upper=[10,0,10]", "count=40", ALL[:-5]
