@@ -13,9 +13,12 @@ static void warn_if_restless(const struct load *load,
                              const struct response *response)
 {
     if (response->n_unconverged > 0)
-        report("under %d of the loads not all grains came to rest within "
-               "quasi_static.tolerance; under the last of these loads grain %d did not",
-               response->n_unconverged, response->unconverged_grain);
+        report(
+            "under %d of the loads not all grains came to rest within "
+            "quasi_static.tolerance; under the last of these loads grain %d did not: "
+            "from there on rounding may decide what breaks (renumber the grains and "
+            "compare, or use engine=explicit)",
+            response->n_unconverged, response->unconverged_grain);
     else if (response->n_unsettled > load->n_time / 2)
         report("%d of %d steps of the load did not come to rest, to an unbalanced "
                "ratio of %g: let steps last longer by cycles, tolerance and "

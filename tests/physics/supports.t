@@ -124,7 +124,8 @@ with scratch_paths() as at:
         told = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *words_of_it, at("forces"), "-o",
                                at("response")], capture_output=True, text=True).stderr
         count = h5py.File(at("response"))["summary"].attrs["steps_unsettled"]
-        ok(f"under {count} of the loads not all grains came to rest" in told if most == 1 else
+        ok(f"under {count} of the loads not all grains came to rest" in told
+           and "rounding may decide what breaks" in told if most == 1 else
            count == 0 and "rest" not in told, f"{count} loads without rest, as the message says",
            told)
 
