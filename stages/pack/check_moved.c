@@ -67,8 +67,10 @@ static enum status check_periods(const struct domain *domain, const struct sizes
         if (domain->periodic[axis] && component(edge, axis) < least)
             return refuse(reason, STATUS_BAD_DATA,
                           "pack.upper: must make a box of at least %g m along %c, "
-                          "which repeats: 2.4 of the largest diameter, got %g",
-                          least, "xyz"[axis], component(edge, axis));
+                          "which repeats: 2.4 of the largest diameter that pack.sizes "
+                          "allows, %g m, got %g",
+                          least, "xyz"[axis], 2 * sizes -> largest,
+                          component(edge, axis));
     return STATUS_OK;
 }
 

@@ -192,8 +192,15 @@ with scratch_paths() as at:
 
     invade_refuses("no inlet is refused", "invade.inlet: must name a wall", "inlet=[]")
     invade_refuses("a wall for both is refused", "invade.outlet: must have no wall in common",
-                   'outlet=["+z","-z"]')
+            'outlet=["+z","-z"]')
     invade_refuses("trapping without an outlet is refused", "no throat reaches the outlet", "outlet=[]")
+    run("pack", *sets("method=poisson", "count=60", "upper=[3e-6,3e-6,3e-6]", "periodic=[true,false,false]"), "-o", at("repeats.h5"))
+    run("tessellate", at("repeats.h5"), "-o", at("around.h5"))
+    os.replace(at("network.h5"), at("kept.h5"))
+    os.replace(at("around.h5"), at("network.h5"))
+    invade_refuses("an inlet where the box repeats is refused", "invade.inlet: must not name -x", 'inlet=["+z","-x"]')
+    invade_refuses("an outlet there too", "invade.outlet: must not name +x", 'outlet=["-z","+x"]')
+    os.replace(at("kept.h5"), at("network.h5"))
     # 100 +- 60 nm: Simpson's rule in tests/physics/throat_radius.c has what is left.
     words = sum((["--set", "throat_radius." + word] for word in
                  ("distribution=normal", "mean=100e-9", "standard_deviation=60e-9")), [])
