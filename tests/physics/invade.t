@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What invade says of a random network, counted anew: pressures, saturations, curve, clusters;
 # gravity; what it refuses.
+import os
 import subprocess
 import sys
 
@@ -192,7 +193,7 @@ with scratch_paths() as at:
 
     invade_refuses("no inlet is refused", "invade.inlet: must name a wall", "inlet=[]")
     invade_refuses("a wall for both is refused", "invade.outlet: must have no wall in common",
-            'outlet=["+z","-z"]')
+                   'outlet=["+z","-z"]')
     invade_refuses("trapping without an outlet is refused", "no throat reaches the outlet", "outlet=[]")
     run("pack", *sets("method=poisson", "count=60", "upper=[3e-6,3e-6,3e-6]", "periodic=[true,false,false]"), "-o", at("repeats.h5"))
     run("tessellate", at("repeats.h5"), "-o", at("around.h5"))
