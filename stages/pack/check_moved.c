@@ -69,8 +69,7 @@ static enum status check_periods(const struct domain *domain, const struct sizes
                           "pack.upper: must make a box of at least %g m along %c, "
                           "which repeats: 2.4 of the largest diameter that pack.sizes "
                           "allows, %g m, got %g",
-                          least, "xyz"[axis], 2 * sizes -> largest,
-                          component(edge, axis));
+                          least, "xyz"[axis], least / 2.4, component(edge, axis));
     return STATUS_OK;
 }
 
