@@ -204,21 +204,6 @@ TEST(energy_balances)
 
 // ---- the same bytes -----------------------------------------------------------------
 
-static void assert_same_state(const struct dem *a, const struct dem *b)
-{
-    int n_a, n_b;
-    struct named_array *of_a = dem_save(a, &n_a), *of_b = dem_save(b, &n_b);
-    assert_int_equal(n_a, n_b);
-    for (int k = 0; k < n_a; k++) {
-        assert_string_equal(of_a[k].name, of_b[k].name);
-        assert_int_equal(of_a[k].count, of_b[k].count);
-        assert_memory_equal(of_a[k].data, of_b[k].data,
-                            (size_t)of_a[k].count * number_size(of_a[k].type));
-    }
-    free_arrays(of_a, n_a);
-    free_arrays(of_b, n_b);
-}
-
 // A layer on held grains, which cracks.
 static struct dem *layer(struct packing *packing, uint8_t **fixed, int threads)
 {

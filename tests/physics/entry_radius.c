@@ -14,8 +14,8 @@ static struct open_section regular(int n, double radius, double apart,
 {
     const double angle = M_PI * (n - 2) / n;
     for (int i = 0; i < n; i++) {
-        grain[i] =
-            (struct section_grain){angle, radius, 0, apart / (2 * sin(M_PI / n))};
+        grain[i] = (struct section_grain){
+            .angle = angle, .radius = radius, .reach = apart / (2 * sin(M_PI / n))};
         gap[i] = (struct section_gap){{i, (i + 1) % n}, apart};
     }
     return (struct open_section){.area = n * apart * apart / (4 * tan(M_PI / n)),
@@ -77,7 +77,8 @@ TEST(mirrors)
                                       .grain = half_grain,
                                       .gap = half_gap};
     for (int i = 0; i < 2; i++) {
-        half_grain[i] = (struct section_grain){M_PI / 2, 1, 0, sqrt(2)};
+        half_grain[i] =
+            (struct section_grain){.angle = M_PI / 2, .radius = 1, .reach = sqrt(2)};
         half_gap[i] = (struct section_gap){{i, -1}, 1};
     }
     half_gap[2] = (struct section_gap){{0, 1}, 2};
