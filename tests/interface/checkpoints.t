@@ -120,7 +120,6 @@ with scratch() as folder:
         crafted(f"dry, {liquid} liquid", "dry", "-p", scene, "--set", f"liquid={liquid}", "network")
     for rings in "isolated", "joined":
         crafted(f"dry, {rings} rings", "dry", "-p", scene, "--set", f"rings={rings}", "network")
-    crafted("dry with a tolerance", "dry", "-p", scene, "--set", "vapour_tolerance=1e-6", "network")
     crafted("dry, curved menisci", "dry", "-p", scene, "--set", "kelvin=true", "network")
     with open("small", "wb") as file:
         file.write(run("merge-nodes", input=run("tessellate", input=run("pack", "--set", "counts=[3,3,4]"))))
