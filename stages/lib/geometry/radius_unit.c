@@ -9,9 +9,9 @@
 #include "geometry/radius_unit.h"
 
 #include "basics/memory.h"
-#include "basics/sorted.h"
 #include "geometry/auxiliary.h"
 
+#include <gsl/gsl_statistics_double.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -26,8 +26,9 @@ static double edge_of(const struct packing *packing, int axis, double *place)
         if (!is_auxiliary(packing, i))
             place[n++] = component(packing->position[i], axis);
     if (n < FEWEST) return 0;
-    qsort(place, (size_t)n, sizeof *place, rising_doubles);
-    return (place[n - 1 - n / 10] - place[n / 10]) / 0.8;
+    const size_t count = (size_t)n, tenth = count / 10;
+    const double upper = gsl_stats_select(place, 1, count, count - 1 - tenth);
+    return (upper - gsl_stats_select(place, 1, count, tenth)) / 0.8;
 }
 
 double radius_unit(const struct packing *packing)

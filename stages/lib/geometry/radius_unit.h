@@ -6,5 +6,5 @@
 
 // By how much radii must be multiplied for the grains to be a body: 1e3, 1e6, 1e-3 or
 // 1e-6; 1 where they are, where there are fewer than 20, and where nothing is certain.
-// Sorts the places along each axis.
+// O(n).
 double radius_unit(const struct packing *packing);
