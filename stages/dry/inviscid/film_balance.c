@@ -5,10 +5,10 @@
 // levels, decides when it is enough.
 //
 // The preconditioner is an approximate factor in two parts. Sites that may be held or
-// freed, and those with many links, come last. What elimination of the others leaves
-// between them is a small network, and only this is eliminated anew when one is held or
-// freed. The first part is kept from one moment of drying to the next, while few sites
-// come or go: making it costs as much as some 30 iterations. With M both parts,
+// freed, and those with many links, come last. Elimination of the others leaves a small
+// network between these. When a site is held or freed, only the small network is
+// eliminated again. The first part costs as much as some 30 iterations: it is kept from
+// one moment of drying to the next while few sites come or go. With M both parts,
 //     z = M^-1 r                at sites that are there and not held now,
 //         r / diagonal          at the others that are not held.
 // Both are symmetric and positive definite.
@@ -27,8 +27,8 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// The first part is made anew once so many sites have come or gone, or are held that
-// are not among the last.
+// So many sites may have come or gone, or be held though they are not among the last,
+// before the first part is made again.
 enum { MOST_CHANGED = 20 };
 // Sites with more links (clusters around which films are everywhere) are among the
 // last.
@@ -53,7 +53,7 @@ struct film_factor {
     int n_link;                      // between rows from n_first on
     struct link *link;               // (n_link)
     int *order;                      // (n - n_first) of each row in LAST
-    bool *is_free;                   // (n - n_first) not held when LAST was made
+    bool *is_held;                   // (n - n_first) when LAST was made, or gone
     double *b, *x, *b_last, *x_last; // (n) and (n - n_first)
 };
 
@@ -72,7 +72,7 @@ static void forget(struct film_factor *factor)
     free(factor->new_site);
     free(factor->link);
     free(factor->order);
-    free(factor->is_free);
+    free(factor->is_held);
     free(factor->b);
     free(factor->x);
     free(factor->b_last);
@@ -96,16 +96,15 @@ struct ordered_sites {
     struct conductance_matrix matrix; // (n)
 };
 
-static void order_sites(struct ordered_sites *sites, int n_all, const bool *last)
+// ORDER (n): the place of each; those that are not LAST come first. Returns how many.
+static int order_last(int n, const bool *last, int *order)
 {
-    sites->n = 0;
-    for (int later = 0, n = 0; later < 2; later++)
-        for (int i = 0; i < n_all; i++) {
-            if (last[i] != later) continue;
-            sites->order[i] = n;
-            sites->site[n++] = i;
-            sites->n += !later;
-        }
+    int first = 0, at = 0;
+    for (int i = 0; i < n; i++)
+        if (!last[i]) order[i] = first++;
+    for (int i = 0; i < n; i++)
+        if (last[i]) order[i] = first + at++;
+    return first;
 }
 
 static struct ordered_sites ordered_sites_init(const struct conductance_matrix *all,
@@ -114,7 +113,9 @@ static struct ordered_sites ordered_sites_init(const struct conductance_matrix *
     const size_t n_all = (size_t)all->n;
     struct ordered_sites sites = {.site = NEW_ARRAY(int, n_all),
                                   .order = NEW_ARRAY(int, n_all)};
-    order_sites(&sites, all->n, last);
+    sites.n = order_last(all->n, last, sites.order);
+    for (int i = 0; i < all->n; i++)
+        sites.site[sites.order[i]] = i;
     struct conductance_matrix *matrix = &sites.matrix;
     *matrix =
         (struct conductance_matrix){.n = sites.n,
@@ -263,7 +264,7 @@ static void make_first(const struct film_flow *flow)
     factor->row = sites.order;
     factor->site = NEW_ARRAY(int, n);
     factor->order = NEW_ARRAY(int, n_last);
-    factor->is_free = NEW_ARRAY(bool, n_last);
+    factor->is_held = NEW_ARRAY(bool, n_last);
     factor->b = NEW_ARRAY(double, n);
     factor->x = NEW_ARRAY(double, n);
     factor->b_last = NEW_ARRAY(double, n_last);
@@ -286,14 +287,9 @@ static void make_last(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
     const int n_last = factor->n - factor->n_first;
-    int n_free = 0, n = 0;
-    for (int free = 1; free >= 0; free--) {
-        for (int k = 0; k < n_last; k++)
-            if (is_free(flow, factor->n_first + k) == free) factor->order[k] = n++;
-        if (free) n_free = n;
-    }
     for (int k = 0; k < n_last; k++)
-        factor->is_free[k] = factor->order[k] < n_free;
+        factor->is_held[k] = !is_free(flow, factor->n_first + k);
+    const int n_free = order_last(n_last, factor->is_held, factor->order);
     struct link *link = NEW_ARRAY(struct link, factor->n_link);
     for (int l = 0; l < factor->n_link; l++) {
         link[l] = factor->link[l];
@@ -336,7 +332,7 @@ static bool last_has_changed(const struct film_flow *flow)
 {
     const struct film_factor *factor = flow->factor;
     for (int row = factor->n_first; row < factor->n; row++)
-        if (is_free(flow, row) != factor->is_free[row - factor->n_first]) return true;
+        if (is_free(flow, row) == factor->is_held[row - factor->n_first]) return true;
     return false;
 }
 
@@ -375,7 +371,7 @@ static void precondition(void *context, const double *residual, double *z)
         factor->b_last[factor->order[k]] = kept[k];
     approximate_cholesky_apply(factor->last, factor->b_last, factor->x_last);
     for (int k = 0; k < n - n_first; k++)
-        kept[k] = factor->is_free[k] ? factor->x_last[factor->order[k]] : 0;
+        kept[k] = factor->is_held[k] ? 0 : factor->x_last[factor->order[k]];
     approximate_cholesky_extend(factor->first, kept, factor->x);
     for (int row = 0; row < n; row++) {
         const int i = factor->site[row];
