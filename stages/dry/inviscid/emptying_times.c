@@ -177,7 +177,7 @@ static void set_rates(struct emptying_times *times, bool all_changed)
 struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_throat)
 {
     const int n_throat = occupancy->network->n_throat;
-    const int n = n_throat + (occupancy->rings ? occupancy->network->n_node : 0);
+    const int n = n_place_of(occupancy);
     struct emptying_times times = {
         .occupancy = occupancy,
         .by_throat = by_throat,

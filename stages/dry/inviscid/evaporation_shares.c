@@ -116,7 +116,7 @@ void share_by_node(struct emptying_times *times, int node)
         if (section > 0)
             add_share(times, node, k, reservoir_of(times, throat), section / sum);
     }
-    if (!(sum > 0) && occupancy->has_rings && occupancy->has_rings[node])
+    if (!(sum > 0) && node_has_rings(occupancy, node))
         add_share(times, node, begin, reservoir_of_rings(times, node), 1);
     for (int k = begin; k < end; k++) {
         const int place = times->share_place[k];

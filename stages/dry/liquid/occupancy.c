@@ -165,8 +165,7 @@ void occupancy_empty_throat(struct occupancy *occupancy, int throat)
         occupancy->gas[node] = true;
         occupancy->breakthrough |=
             (occupancy->network->node_walls[node] & occupancy->far_walls) != 0;
-        if (--occupancy->liquid_beside[node] > 0 ||
-            (occupancy->has_rings && occupancy->has_rings[node]))
+        if (--occupancy->liquid_beside[node] > 0 || node_has_rings(occupancy, node))
             add_wet(occupancy, node);
         else
             dry_node(occupancy, node);
@@ -211,8 +210,7 @@ void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stre
     stream_sums(stream, occupancy->liquid, n_throat);
     stream_sums(stream, &occupancy->total_liquid, 1);
     stream_numbers(stream, &occupancy->initial_liquid, 1);
-    stream_integer(stream, &occupancy->n_liquid, 0,
-                   n_throat + (occupancy->has_rings ? n_node : 0));
+    stream_integer(stream, &occupancy->n_liquid, 0, n_place_of(occupancy));
     stream_flags(stream, occupancy->gas, n_node);
     stream_integers(stream, occupancy->liquid_beside, n_node, 0, n_throat);
     if (occupancy->has_rings) stream_flags(stream, occupancy->has_rings, n_node);

@@ -43,6 +43,20 @@ struct occupancy {
     bool breakthrough; // gas has reached one of the far walls
 };
 
+// Places where liquid may be: throats and, with rings, nodes; the rings at node i are
+// place n_throat + i.
+static inline int n_place_of(const struct occupancy *occupancy)
+{
+    const struct network *network = occupancy->network;
+    return network->n_throat + (occupancy->rings ? network->n_node : 0);
+}
+
+// Whether the rings at NODE hold liquid.
+static inline bool node_has_rings(const struct occupancy *occupancy, int node)
+{
+    return occupancy->has_rings && occupancy->has_rings[node];
+}
+
 // How to make one. It owns nothing.
 struct occupancy_form {
     double length;                   // m, the unit

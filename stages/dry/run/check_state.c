@@ -111,17 +111,12 @@ static bool menisci_fit(const struct clusters *clusters)
 
 // ---- occupancy ---------------------------------------------------------------------
 
-static bool has_rings(const struct occupancy *occupancy, int node)
-{
-    return occupancy->has_rings && occupancy->has_rings[node];
-}
-
 // Whether there is liquid in a throat, or in the rings of a node.
 static bool is_liquid(const struct occupancy *occupancy, int place)
 {
     const int n_throat = occupancy->network->n_throat;
     return place < n_throat ? occupancy->clusters.of_throat[place] >= 0
-                            : has_rings(occupancy, place - n_throat);
+                            : node_has_rings(occupancy, place - n_throat);
 }
 
 // The counts of throats with liquid are right, in all and at each node; in all, nodes
@@ -141,7 +136,7 @@ static bool liquid_fits(const struct occupancy *occupancy)
     for (int i = 0; i < network->n_node; i++)
         fits &= beside[i] == occupancy->liquid_beside[i];
     for (int i = 0; i < network->n_node; i++)
-        n_liquid += has_rings(occupancy, i);
+        n_liquid += node_has_rings(occupancy, i);
     free(beside);
     return fits && n_liquid == occupancy->n_liquid;
 }
@@ -157,7 +152,7 @@ static bool wet_nodes_fit(const struct occupancy *occupancy)
     for (int w = 0; w < occupancy->n_wet; w++) {
         const int node = occupancy->wet[w];
         if (occupancy->wet_place[node] != w ||
-            (occupancy->liquid_beside[node] == 0 && !has_rings(occupancy, node)))
+            (occupancy->liquid_beside[node] == 0 && !node_has_rings(occupancy, node)))
             return false;
         for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
             if (clusters->of_throat[incidence->throat[k]] >= 0 &&
@@ -218,7 +213,7 @@ static bool may_share(const struct emptying_times *times, int timer, int node,
 {
     const struct occupancy *occupancy = times->occupancy;
     const int owner = times->owner[timer];
-    if (occupancy->liquid_beside[node] > 0 || !has_rings(occupancy, node))
+    if (occupancy->liquid_beside[node] > 0 || !node_has_rings(occupancy, node))
         return owner == reservoir_of(times, throat);
     return owner == occupancy->network->n_throat + node ||
            (occupancy->feeder && owner == occupancy->feeder[node]);
@@ -288,7 +283,7 @@ static bool history_fits(const struct recorder *recorder)
 // is_ended marks exactly these; else they must be empty.
 static bool ended_fit(const struct run *run, bool flagged)
 {
-    const int n = places_of(run);
+    const int n = n_place_of(&run->occupancy);
     bool *seen = NEW_ARRAY(bool, n), fits = true;
     for (int k = 0; k < run->n_ended; k++) {
         const int place = run->ended[k];

@@ -131,7 +131,7 @@ static void prepare(struct run *run)
     else
         run->times = emptying_times_init(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
-    const int n = places_of(run);
+    const int n = n_place_of(&run->occupancy);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, n);
     run->is_ended = NEW_ARRAY(bool, n);

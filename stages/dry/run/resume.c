@@ -48,7 +48,7 @@ static void flow_state(struct run *run, struct checkpoint_stream *stream)
 
 static void steps_state(struct run *run, struct checkpoint_stream *stream)
 {
-    const int n = places_of(run);
+    const int n = n_place_of(&run->occupancy);
     stream_numbers(stream, &run->step_saturation, 1);
     stream_sums(stream, &run->step_time, 1);
     stream_sums(stream, &run->step_evaporated, 1);
@@ -77,10 +77,10 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
     stream_sums(stream, &run->evaporated, 1);
     stream_numbers(stream, &run->imbalance, 1);
     stream_numbers(stream, &run->first_rate, 1);
-    stream_integer(stream, &run->n_at_start, 0, places_of(run));
+    stream_integer(stream, &run->n_at_start, 0, n_place_of(&run->occupancy));
     stream_long(stream, &run->n_flow_step);
-    recorder_state(&run->recorder, run->occupancy.network->n_throat, places_of(run),
-                   stream);
+    recorder_state(&run->recorder, run->occupancy.network->n_throat,
+                   n_place_of(&run->occupancy), stream);
     occupancy_state(&run->occupancy, stream);
     steps_state(run, stream);
     const int n_throat = run->occupancy.network->n_throat;

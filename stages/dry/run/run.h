@@ -45,17 +45,9 @@ struct run {
     int n_skipped;      // events
     int n_ended;        // throats that have emptied; with losses: that have changed
     int *ended;         // (n_ended)
-    bool *is_ended;     // (places_of) with losses: whether among them
-    double *saturation; // (places_of) at that step
+    bool *is_ended;     // (n_place_of) with losses: whether among them
+    double *saturation; // (n_place_of) at that step
 };
-
-// Throats and, with rings, nodes: where liquid may be, the rings at node i as n_throat
-// + i.
-static inline int places_of(const struct run *run)
-{
-    const struct network *network = run->occupancy.network;
-    return network->n_throat + (run->conditions->rings ? network->n_node : 0);
-}
 
 // Liquid over the throats' volume, from 1 when full to exactly 0 when all is dry.
 double network_saturation(const struct run *run);
