@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Polygons filled to their borders (polygons.nearest) meet at corners of four columns
-// with three or more polygons around them; corners from each to the next of which it is
-// at most h / 2 are one junction, at their mean. A circle of radius h / 2 about it,
-// followed by angle, crosses the borders; angles between crossings are those between
-// cracks:
+// with three or more polygons around them. Two corners at most h / 2 apart belong to
+// one junction, and so do corners that a chain of such pairs joins; it lies at their
+// mean. A circle of radius h / 2 about it, followed by angle, crosses the borders;
+// angles between crossings are those between cracks:
 //     T: largest above 155 degrees, Y: largest below 135 degrees.
 // Where the circle crosses fewer than three borders, or more than five (another
 // junction is near), nothing is measured.

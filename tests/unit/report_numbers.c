@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for people: counts and ends of axes without an exponent, as one writes them.
+// A page shows counts and ends of axes as people write them, without an exponent.
 #include "../test.h"
 #include "report/html.h"
 

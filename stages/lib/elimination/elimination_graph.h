@@ -25,8 +25,8 @@ struct vertex {
 
 // Given places have no row. The first N_KEPT of them, n to n + n_kept - 1, keep their
 // names, and links that elimination leaves between them are gathered in LINK; the
-// others are one, n + n_kept: edges to it are ground. It owns its arrays. Vertices are
-// numbered anew when the graph is compacted; INDEX says what they were.
+// others are one, n + n_kept: edges to it are ground. It owns its arrays. Compacting
+// the graph gives its vertices new numbers; INDEX has their numbers in the matrix.
 struct elimination_graph {
     int n, n_kept;
     struct vertex *vertex; // (n)
