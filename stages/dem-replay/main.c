@@ -342,7 +342,6 @@ static void choose_bridges(struct replay_parameters *parameters,
 
 // Only the number of grains and whether there are bonds decide on the engine; the input
 // of a body that only shrinks or drains has no loads.
-// Frees INVOCATION.
 static int estimate(struct invocation *invocation, struct replay_parameters *parameters)
 {
     struct replay_settings *settings = &parameters->settings;
@@ -368,9 +367,7 @@ static int estimate(struct invocation *invocation, struct replay_parameters *par
             ? cost_of_drainage(&body, ramp, cycles + least_cycles(drains), most)
             : cost_of_cycles(&body, ramp, cycles,
                              isnan(settings->tolerance) ? cycles : most);
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 int main(int argc, char **argv)

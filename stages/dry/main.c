@@ -222,7 +222,6 @@ static double expected_layers(const struct invocation *invocation,
     return fmax(1, layers);
 }
 
-// Frees INVOCATION: there is nothing else to do.
 static int estimate(struct invocation *invocation,
                     const struct dry_parameters *parameters)
 {
@@ -237,9 +236,7 @@ static int estimate(struct invocation *invocation,
     if (parameters->rings != RINGS_NONE)
         cost = with_rings(cost, &body, parameters->rings == RINGS_FILMS,
                           film_step(parameters, body.throats));
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 int main(int argc, char **argv)

@@ -368,15 +368,12 @@ static void write(const struct computation *computation,
     artifact_finish(artifact, invocation, one_input(input), model);
 }
 
-// Frees INVOCATION: there is nothing else to do.
 static int estimate(struct invocation *invocation,
                     const struct flow_parameters *parameters)
 {
     const struct body_size body = input_size(invocation, 0);
     const struct cost cost = cost_of_flow(body.grains, parameters->tensor ? 4 : 1);
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 int main(int argc, char **argv)

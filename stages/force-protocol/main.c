@@ -459,7 +459,6 @@ static void write_forces(const struct process *process, const double *time, int 
 
 // Times by largest_change are found only from the drying: as many as uniform ones are
 // expected.
-// Frees INVOCATION.
 static int estimate(struct invocation *invocation,
                     const struct force_parameters *parameters)
 {
@@ -467,9 +466,7 @@ static int estimate(struct invocation *invocation,
     if (!(body.changes > 0)) body.changes = recorded_changes(&body, NAN);
     body.loads = (double)parameters->steps;
     const struct cost cost = cost_of_forces(&body);
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 static void warn_of_rings(const struct pendular_rings *rings, double suction)

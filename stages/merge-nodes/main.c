@@ -106,14 +106,11 @@ static void check_images(const struct network *network, const char *path)
             input_name(path), FARTHEST_IMAGE);
 }
 
-// Frees INVOCATION: there is nothing else to do.
 static int estimate(struct invocation *invocation)
 {
     const struct body_size body = input_size(invocation, 0);
     const struct cost cost = cost_of_merging(&body);
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 int main(int argc, char **argv)

@@ -135,14 +135,11 @@ static const char *const radius_rule[] = {
     [CLEARANCE_LINE] = "the infinite line through it to the grains beside it [K 3.7]",
     [CLEARANCE_BESIDE] = "the throat to the grains beside it"};
 
-// Frees INVOCATION: there is nothing else to do.
 static int estimate(struct invocation *invocation)
 {
     const struct body_size body = input_size(invocation, 0);
     const struct cost cost = cost_of_tessellation(body.grains);
-    print_estimate(&cost, &body);
-    invocation_free(invocation);
-    return STATUS_OK;
+    return end_with_estimate(invocation, &cost, &body);
 }
 
 int main(int argc, char **argv)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "parameters/estimate.h"
 
+#include "basics/status.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,4 +32,12 @@ void print_estimate(const struct cost *cost, const struct body_size *body)
     json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');
     json_decref(line);
+}
+
+int end_with_estimate(struct invocation *invocation, const struct cost *cost,
+                      const struct body_size *body)
+{
+    print_estimate(cost, body);
+    invocation_free(invocation);
+    return STATUS_OK;
 }
