@@ -127,6 +127,19 @@ for heavy, what, path, settings in (
            np.allclose(time, base["history/time"][:] / base["history/time"][-1], rtol=1e-9, atol=0),
            f"{what}: dries alike", len(time))
 
+# ---- films of thousands of sites, most of whose sources come and go ---------------------------
+
+for seed in 5, 6:
+    run("pack", "-q", *sets("method=soft_spheres", "radius=250e-9", "sizes.distribution=normal", "sizes.spread=0.2",
+                            "sizes.smallest=125e-9", "sizes.largest=375e-9", "upper=[5e-6,5e-6,5e-6]", "target=porosity",
+                            "target_value=0.38", f"seed={seed}"), "-o", at("packing"))
+    run("tessellate", "-q", *sets("throat_volume=void"), at("packing"), "-o", at("diagram"))
+    run("merge-nodes", "-q", *sets("measure=fraction", "threshold=0.06"), at("diagram"), "-o", at("larger"))
+    with dry(at("larger"), "rings=films", "step_interval=0.01", name="dried") as file:
+        error = books(file)[0]
+        ok(error < 1e-12 and file["history/saturation"][-1] == 0,
+           f"draw {seed}: 11,000 throats with films dry, and add up", (error, len(file["throats/radius"])))
+
 # ---- threads, refusals ----------------------------------------------------------------------
 
 dry(net, "rings=films", "films.conductance=0.03", name="two", options=["--threads", "2"]).close()

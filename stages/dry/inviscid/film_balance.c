@@ -14,6 +14,7 @@
 // Both are symmetric and positive definite.
 #include "film_balance.h"
 
+#include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "elimination/approximate_cholesky.h"
 #include "sparse/cholesky.h"
@@ -282,6 +283,33 @@ static bool is_free(const struct film_flow *flow, int row)
     return site >= 0 && !flow->held[site];
 }
 
+// Adds to the N_LINK LINKs between N_FREE rows, and from these to GROUND and above, one
+// to GROUND from each part that has none. Where the held sites of a part have come
+// since the first part was made, nothing there would be fixed, and the factor would be
+// singular. Returns the number of links.
+static int ground_parts(const struct film_flow *flow, int n_free, int n_link,
+                        struct link *link)
+{
+    const struct film_factor *factor = flow->factor;
+    int *part = NEW_ARRAY(int, n_free + 1);
+    for (int k = 0; k <= n_free; k++)
+        part[k] = k;
+    for (int l = 0; l < n_link; l++) {
+        const int *end = link[l].site;
+        unite_sets(part, end[0] < n_free ? end[0] : n_free,
+                   end[1] < n_free ? end[1] : n_free);
+    }
+    for (int k = 0; k < factor->n - factor->n_first; k++) {
+        const int row = factor->order[k], ground = set_root(part, n_free);
+        if (row >= n_free || set_root(part, row) == ground) continue;
+        const int site = factor->site[factor->n_first + k];
+        link[n_link++] = (struct link){{row, n_free}, flow->matrix->diagonal[site]};
+        unite_sets(part, row, n_free);
+    }
+    free(part);
+    return n_link;
+}
+
 // Eliminates what is free among the last rows; the others are held.
 static void make_last(const struct film_flow *flow)
 {
@@ -290,14 +318,15 @@ static void make_last(const struct film_flow *flow)
     for (int k = 0; k < n_last; k++)
         factor->is_held[k] = !is_free(flow, factor->n_first + k);
     const int n_free = order_last(n_last, factor->is_held, factor->order);
-    struct link *link = NEW_ARRAY(struct link, factor->n_link);
+    struct link *link = NEW_ARRAY(struct link, factor->n_link + n_free);
     for (int l = 0; l < factor->n_link; l++) {
         link[l] = factor->link[l];
         for (int end = 0; end < 2; end++)
             link[l].site[end] = factor->order[link[l].site[end] - factor->n_first];
     }
+    const int n_link = ground_parts(flow, n_free, factor->n_link, link);
     struct conductance_matrix matrix =
-        conductance_matrix_of_links(n_free, n_last, factor->n_link, link);
+        conductance_matrix_of_links(n_free, n_last + 1, n_link, link);
     approximate_cholesky_free(factor->last);
     factor->last = approximate_cholesky_create(&matrix);
     conductance_matrix_free(&matrix);
