@@ -118,7 +118,7 @@ with scratch() as folder:
         file.write(made)
     for liquid in "inviscid", "immobile", "viscous":
         crafted(f"dry, {liquid} liquid", "dry", "-p", scene, "--set", f"liquid={liquid}", "network")
-    for rings in "isolated", "joined":
+    for rings in "isolated", "joined", "films":
         crafted(f"dry, {rings} rings", "dry", "-p", scene, "--set", f"rings={rings}", "network")
     crafted("dry, curved menisci", "dry", "-p", scene, "--set", "kelvin=true", "network")
     with open("small", "wb") as file:

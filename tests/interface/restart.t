@@ -271,7 +271,7 @@ with scratch() as folder:
         in_pieces(f"dry, {liquid} liquid, irregular body", [*dry, "--set", f"liquid={liquid}", irregular])
     in_pieces("dry with a tolerance", [*dry, "--set", "vapour_tolerance=1e-6", irregular])
     beads = make_irregular(folder, "beads", 1500, "[11e-6,11e-6,11e-6]", "soft_spheres")
-    for rings, liquid in ("isolated", "inviscid"), ("isolated", "immobile"), ("joined", "inviscid"):
+    for rings, liquid in ("isolated", "inviscid"), ("isolated", "immobile"), ("joined", "inviscid"), ("films", "inviscid"):
         in_pieces(f"dry, {rings} rings, {liquid} liquid", [*dry, "--set", f"rings={rings}", "--set", f"liquid={liquid}", beads])
 
     without_a_place("dry", [*dry, "--set", "liquid=viscous", small])

@@ -149,6 +149,4 @@ for settings, line in [(["liquid=viscous"], "rings: must be none where liquid is
                        (["kelvin=true"], "rings: must be none where liquid is viscous or menisci are curved"),
                        (["films.half_angle=90"], "films.half_angle"), (["films.conductance=-1"], "films.conductance")]:
     refused(f"{settings} is refused", line, "dry", "-q", *sets("rings=films", *settings), net)
-refused("so is a checkpoint", "rings: must not be films where a checkpoint is kept",
-        "dry", "-q", "--checkpoint", at("kept"), "-s", "rings=films", net, "-o", at("no"))
 done()

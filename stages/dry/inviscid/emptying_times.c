@@ -407,4 +407,5 @@ void emptying_times_state(struct emptying_times *times,
         times->nothing[k] = throat < 0 ? 0 : TIE * volume_of(times, throat);
         find_end(times, k);
     }
+    if (times->films) film_supply_state(times, stream);
 }

@@ -63,7 +63,7 @@ struct film_factor *film_factor_create(void)
     return NEW_ARRAY(struct film_factor, 1);
 }
 
-static void forget(struct film_factor *factor)
+void film_factor_forget(struct film_factor *factor)
 {
     approximate_cholesky_free(factor->first);
     approximate_cholesky_free(factor->last);
@@ -84,7 +84,7 @@ static void forget(struct film_factor *factor)
 void film_factor_free(struct film_factor *factor)
 {
     if (!factor) return;
-    forget(factor);
+    film_factor_forget(factor);
     free(factor);
 }
 
@@ -255,7 +255,7 @@ static void make_first(const struct film_flow *flow)
     bool *last = find_last(flow);
     struct ordered_sites sites = ordered_sites_init(flow->matrix, last);
     const int n_last = n - sites.n;
-    forget(factor);
+    film_factor_forget(factor);
     factor->n = n;
     factor->n_first = sites.n;
     factor->first = approximate_cholesky_create_partly(&sites.matrix, n_last,

@@ -12,6 +12,9 @@ struct film_factor;
 struct film_factor *film_factor_create(void);
 void film_factor_free(struct film_factor *factor);
 
+// As if just created: what is found next does not depend on what was found before.
+void film_factor_forget(struct film_factor *factor);
+
 // Corrects FLOW->level where no site is held. RESIDUAL (n) becomes the balances of all
 // sites, less what is TAKEN: the surplus with its sign turned where a site is held. The
 // others add up to TOLERANCE at most, or to what rounding of levels makes; false if

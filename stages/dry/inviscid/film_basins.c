@@ -10,9 +10,11 @@
 #include "film_basins.h"
 
 #include "basics/memory.h"
+#include "dry/liquid/clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 struct waiting {
     double gap;
@@ -257,4 +259,66 @@ double film_basins_fall(const struct film_basins *basins, int place)
 double film_basins_failing(const struct film_basins *basins)
 {
     return basins->failing;
+}
+
+int film_basins_count(const struct film_basins *basins)
+{
+    return basins->n;
+}
+
+// --- state -------------------------------------------------------------------------
+
+// Which basin an end is of is told by the range of ends of each basin.
+static void ends_state(struct film_basins *basins, struct checkpoint_stream *stream)
+{
+    int64_t n = basins->n_end;
+    stream_count(stream, &n);
+    basins->end = stream_room(stream, basins->end, n, sizeof *basins->end);
+    if (stream->restoring) basins->n_end = basins->end_capacity = (int)n;
+    for (int k = 0; k < basins->n_end; k++) {
+        stream_numbers(stream, &basins->end[k].level, 1);
+        stream_numbers(stream, &basins->end[k].evaporation, 1);
+    }
+}
+
+static void basin_state(struct basin *basin, int n_end, int n_cluster,
+                        struct checkpoint_stream *stream)
+{
+    stream_numbers(stream, &basin->fall, 1);
+    stream_integer(stream, &basin->end, 0, n_end);
+    stream_integer(stream, &basin->last_end, 0, n_end);
+    int64_t n = basin->n;
+    stream_count(stream, &n);
+    basin->heap = stream_room(stream, basin->heap, n, sizeof *basin->heap);
+    if (stream->restoring) basin->n = basin->capacity = (int)n;
+    for (int k = 0; k < basin->n; k++) {
+        stream_numbers(stream, &basin->heap[k].gap, 1);
+        stream_integer(stream, &basin->heap[k].cluster, 0, n_cluster - 1);
+    }
+}
+
+void film_basins_state(struct film_basins *basins, struct checkpoint_stream *stream)
+{
+    int64_t n = basins->n;
+    if (stream->restoring) clear(basins);
+    stream_count(stream, &n);
+    basins->basin = stream_room(stream, basins->basin, n, sizeof *basins->basin);
+    if (stream->restoring) {
+        memset(basins->basin, 0, (size_t)n * sizeof *basins->basin);
+        basins->n = basins->capacity = (int)n;
+    }
+    ends_state(basins, stream);
+    for (int b = 0; b < basins->n; b++)
+        basin_state(&basins->basin[b], basins->n_end, basins->n_cluster, stream);
+    stream_integers(stream, basins->of, basins->n_place, -1, basins->n - 1);
+    stream_numbers(stream, basins->gap, basins->n_cluster);
+    stream_numbers(stream, &basins->failing, 1);
+}
+
+bool film_basins_fit(const struct film_basins *basins, const struct clusters *clusters)
+{
+    for (int c = 0; c < basins->n_cluster; c++)
+        if (basins->of[c] >= 0 && !(c < clusters->n_id && clusters->size[c] > 0))
+            return false;
+    return true;
 }

@@ -33,6 +33,10 @@ static const double MOST_STRAY = 2;
 // that fails for a moment lets rings dry, which stay dry.
 static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
 
+// The factor is forgotten before each so manyth solution, with and without checkpoints:
+// a state that is kept there needs none. At a usual step it would not last longer.
+enum { SOLUTIONS_BETWEEN_CUTS = 4 };
+
 // Rounds of levels and conductances under gravity: a few, unless the liquid of a throat
 // weighs as much as its suction.
 enum { MOST_WEIGHED = 1000 };
@@ -94,6 +98,11 @@ bool film_supply_is_due(const struct emptying_times *times)
     const double fallen = films->saturation - saturation_now(times->occupancy);
     return films->is_due || !(step > 0) || fallen >= step ||
            (fallen >= SHORTEST * step && is_failing(times));
+}
+
+bool film_supply_may_be_kept(const struct film_supply *films)
+{
+    return films->solutions % SOLUTIONS_BETWEEN_CUTS == 0;
 }
 
 // --- finding -----------------------------------------------------------------------
@@ -262,6 +271,7 @@ void film_supply_find(struct emptying_times *times)
 {
     struct film_supply *films = times->films;
     const int n_throat = times->occupancy->network->n_throat;
+    if (film_supply_may_be_kept(films)) film_factor_forget(films->factor);
     begin(times);
     struct film_network network = film_network_init(times->occupancy);
     forget_unreached(films, &network, n_throat, times->occupancy->network->n_node);
@@ -414,4 +424,44 @@ void film_supply_empty_throat(struct emptying_times *times, int throat, int clus
     if (basin < 0 && clusters->size[cluster] > 0) return;
     part(times, cluster, cluster, basin);
     if (basin >= 0) choose_source(films, basin, drawn);
+}
+
+// --- state -------------------------------------------------------------------------
+
+// What nodes evaporate is found again before it is used.
+void film_supply_state(struct emptying_times *times, struct checkpoint_stream *stream)
+{
+    struct film_supply *films = times->films;
+    const struct network *network = times->occupancy->network;
+    stream_numbers(stream, films->own, times->n_place);
+    stream_numbers(stream, films->drawn, times->n_place);
+    stream_numbers(stream, &films->scale, 1);
+    stream_numbers(stream, &films->evaporation, 1);
+    stream_integer(stream, &films->n_source, 0, network->n_throat);
+    stream_integers(stream, films->source, films->n_source, -1, network->n_throat - 1);
+    stream_flags(stream, films->reached, network->n_node);
+    stream_flags(stream, films->floats, network->n_throat);
+    stream_sums(stream, films->level, times->n_place);
+    stream_flags(stream, films->is_known, times->n_place);
+    stream_flags(stream, &films->is_due, 1);
+    stream_numbers(stream, &films->lost, 1);
+    stream_numbers(stream, &films->saturation, 1);
+    stream_long(stream, &films->solutions);
+    film_basins_state(films->basins, stream);
+    if (!stream->restoring) return;
+    film_factor_forget(films->factor);
+    films->failed = false;
+}
+
+bool film_supply_fits(const struct emptying_times *times)
+{
+    const struct film_supply *films = times->films;
+    const struct clusters *clusters = &times->occupancy->clusters;
+    if (film_basins_count(films->basins) != films->n_source) return false;
+    for (int l = 0; l < films->n_source; l++) {
+        const int source = films->source[l];
+        if (source >= 0 && !(source < clusters->n_id && clusters->size[source] > 0))
+            return false;
+    }
+    return film_basins_fit(films->basins, clusters);
 }

@@ -46,5 +46,17 @@ void film_supply_find(struct emptying_times *times);
 // Replaces the sums of shares in TIMES->rate by what reservoirs lose.
 void film_supply_set_rates(struct emptying_times *times);
 
+// Whether the state may be kept now: what is left from earlier solutions to find the
+// next one faster will be forgotten first.
+bool film_supply_may_be_kept(const struct film_supply *films);
+
+// Writes to STREAM, or restores from it, the state between two events at which it may
+// be kept.
+void film_supply_state(struct emptying_times *times, struct checkpoint_stream *stream);
+
+// Whether clusters that films draw from, now or later, have liquid: a restored state
+// may say otherwise.
+bool film_supply_fits(const struct emptying_times *times);
+
 // THROAT of CLUSTER has emptied, and what has parted from it are clusters of their own.
 void film_supply_empty_throat(struct emptying_times *times, int throat, int cluster);

@@ -4,9 +4,9 @@
 // A state that passes cannot lead the run outside its arrays or into an endless loop.
 //
 // In this order, which run_fits keeps: clusters, occupancy, vapour, what has changed
-// since the last step, losses, history, timers. The stream has checked by then that
-// each index lies in its array (go_on_from asks it first), so these functions may use
-// indices before they know that they make sense.
+// since the last step, losses, history, timers, films. The stream has checked by then
+// that each index lies in its array (go_on_from asks it first), so these functions may
+// use indices before they know that they make sense.
 //
 // It is not checked that numbers are those of a drying: volumes, rates and factors may
 // be wrong. The restart artifact has the digests of parameters and inputs for that.
@@ -16,6 +16,8 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "dry/inviscid/evaporation_shares.h"
+#include "dry/inviscid/film_supply.h"
+#include "film_history.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -178,8 +180,9 @@ static bool owners_fit(const struct emptying_times *times)
             continue;
         }
         running++;
-        if (times->timer[owner] != k || throat < 0 || times->shares[k] == 0 ||
-            !is_liquid(occupancy, throat) || reservoir_of(times, throat) != owner)
+        if (times->timer[owner] != k || throat < 0 ||
+            (times->shares[k] == 0 && !times->films) || !is_liquid(occupancy, throat) ||
+            reservoir_of(times, throat) != owner)
             return false;
     }
     bool *seen = NEW_ARRAY(bool, times->n);
@@ -267,6 +270,7 @@ static bool history_fits(const struct recorder *recorder)
     const int n = history->n_step, n_event = history->n_event;
     for (int k = 0; k < n; k++)
         if (history->change_offset[k + 1] < history->change_offset[k]) return false;
+    if (history->films && history->films->n != n) return false;
     return history->change_offset[0] == 0 &&
            history->change_offset[n] == recorder->n_change &&
            lies_up_to(history->change_saturation, recorder->n_change, 1) &&
@@ -319,5 +323,6 @@ bool run_fits(const struct run *run)
            kron_fronts_fit(&occupancy->vapour.mesh) && ended_fit(run, !has_timers) &&
            losses_fit(run) && history_fits(&run->recorder) &&
            (!has_timers || (owners_fit(&run->times) && losing_fit(&run->times) &&
-                            shares_fit(&run->times)));
+                            shares_fit(&run->times) &&
+                            (!run->times.films || film_supply_fits(&run->times))));
 }

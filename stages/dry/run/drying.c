@@ -36,8 +36,6 @@ static void begin(struct run *run)
 {
     run->n_at_start = run->occupancy.n_liquid;
     run->first_rate = rate_now(run);
-    if (run->conditions->rings == RINGS_FILMS)
-        run->recorder.history->films = film_history_create();
     note_breakthrough(run);
     record_state(run);
 }
@@ -131,6 +129,8 @@ static void prepare(struct run *run)
     else
         run->times = emptying_times_init(&run->occupancy,
                                          run->conditions->liquid == LIQUID_IMMOBILE);
+    if (run->conditions->rings == RINGS_FILMS)
+        run->recorder.history->films = film_history_create();
     const int n = n_place_of(&run->occupancy);
     run->step_saturation = network_saturation(run);
     run->ended = NEW_ARRAY(int, n);
@@ -252,11 +252,6 @@ enum status dry_network(const struct network *network,
                       .recorder = recorder_init(history)};
     status = make_occupancy(network, &run, reason);
     const struct keeper *keeper = progress ? progress->keeper : NULL;
-    if (!status && conditions->rings == RINGS_FILMS && keeper &&
-        (keeper->due || keeper->begin))
-        status = refuse(reason, STATUS_BAD_DATA,
-                        "rings: must not be films where a checkpoint is kept; or run "
-                        "without --checkpoint");
     if (!status) status = begin_run(&run, keeper, reason);
     if (!status) status = dry_all(&run, progress, reason);
     if (!status) summarise(&run, history);

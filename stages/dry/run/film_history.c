@@ -82,3 +82,17 @@ void film_history_add(struct film_history *films, const struct emptying_times *t
     films->depth[films->n] = reached > 0 ? sum / reached : 0;
     films->deepest[films->n++] = deepest;
 }
+
+void film_history_state(struct film_history *films, struct checkpoint_stream *stream)
+{
+    int64_t n = films->n;
+    stream_count(stream, &n);
+    films->evaporation = stream_room(stream, films->evaporation, n, sizeof(double));
+    films->depth = stream_room(stream, films->depth, n, sizeof(double));
+    films->deepest = stream_room(stream, films->deepest, n, sizeof(double));
+    if (stream->restoring) films->n = films->capacity = (int)n;
+    stream_numbers(stream, films->evaporation, n);
+    stream_numbers(stream, films->depth, n);
+    stream_numbers(stream, films->deepest, n);
+    stream_numbers(stream, &films->evaporated, 1);
+}

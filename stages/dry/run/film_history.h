@@ -25,3 +25,6 @@ void film_history_free(struct film_history *films);
 // occupancy scale it. O(n_node).
 void film_history_add(struct film_history *films, const struct emptying_times *times,
                       unsigned open_walls, double rate);
+
+// Writes to STREAM, or restores from it, the steps so far.
+void film_history_state(struct film_history *films, struct checkpoint_stream *stream);

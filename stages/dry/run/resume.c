@@ -17,6 +17,8 @@
 
 #include "basics/memory.h"
 #include "check_state.h"
+#include "dry/inviscid/film_supply.h"
+#include "film_history.h"
 
 #include <limits.h>
 
@@ -89,6 +91,8 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
         kelvin_menisci_state(&run->kelvin, run->occupancy.network, stream);
         losses_state(&run->losses, n_throat, stream);
     }
+    if (run->recorder.history->films)
+        film_history_state(run->recorder.history->films, stream);
     if (is_viscous) flow_state(run, stream);
     if (is_viscous && run->conditions->kelvin)
         kelvin_viscous_state(&run->coupling, stream);
@@ -98,9 +102,12 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
 
 static const char streams[] = "drying"; // prefix of the arrays in the artifact
 
-// Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0).
+// Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0),
+// but those with films only where these will forget.
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
+    const struct film_supply *films = run->times.films;
+    if (films && !film_supply_may_be_kept(films)) return;
     if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
     if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->occupancy);
