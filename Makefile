@@ -110,14 +110,16 @@ library_objects := $(call object,$(library_sources))
 stage_sources = $(wildcard stages/$1/*.c stages/$1/*.S stages/$1/*/*.c)
 core_sources := $(filter-out %/main.c,$(foreach s,$(STAGES),$(call stage_sources,$s)))
 
-# A test is a C program; test.c, its main program, and support_*.c beside it are linked into each.
+# A test is a C program; test.c, its main program, and support_*.c beside it or one folder up are
+# linked into each.
+test_folders := $(patsubst tests/%/,%,$(sort $(dir $(wildcard tests/unit/*.c tests/physics/*.c tests/physics/*/*.c))))
 tests_in = $(filter-out tests/$1/support_%,$(wildcard tests/$1/*.c))
-support_for = $(call object,$(wildcard tests/$1/support_*.c $(if $(filter bench%,$1),,tests/test.c)))
+support_for = $(call object,$(wildcard tests/$1/support_*.c $(dir tests/$1)support_*.c $(if $(filter bench%,$1),,tests/test.c)))
 test_programs = $(patsubst tests/%.c,$(BUILD)/tests/%,$(call tests_in,$1))
-C_TESTS := $(foreach d,unit physics,$(call test_programs,$d))
+C_TESTS := $(foreach d,$(test_folders),$(call test_programs,$d))
 VOID := $(call test_programs,bench/void)
 BENCHES := $(call test_programs,bench) $(VOID)
-SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t))
+SCRIPT_TESTS := $(filter-out tests/hard/%,$(wildcard tests/*/*.t tests/*/*/*.t))
 
 quiet = $(if $(filter 0yes,$(V)$(really)),@printf '  %-5s %s\n' '$1' '$2' && ,)
 
@@ -138,7 +140,7 @@ VERSION := $(file <VERSION)
 # ends a file of more than 200 bytes.
 flags := $(strip $(CC) $(CXX) $(CFLAGS) $(CXXFLAGS) $(LDFLAGS) $(VERSION))
 sources := $(sort $(wildcard stages/*/main.c) $(core_sources) $(library_sources) \
-	$(wildcard tests/*/support_*.c))
+	$(wildcard tests/*/support_*.c tests/*/*/support_*.c))
 define note
 $(BUILD)/$1: $(if $(findstring |$($1)|,|$(strip $(file <$(BUILD)/$1))|),,FORCE)
 	@mkdir -p $$(@D) && printf '%s\n' '$($1)' >$$@
@@ -189,7 +191,7 @@ $(call test_programs,$1): $(BUILD)/tests/$1/%: $(BUILD)/obj/tests/$1/%.o $(call 
 	$$(call quiet,LINK,tests/$1/$$*)mkdir -p $$(@D) \
 	&& $(CC) $$(LDFLAGS) $(fast_linker) $$(filter %.o %.a,$$^) $$(LIBS) -lcmocka -o $$@
 endef
-$(foreach d,unit physics bench bench/void,$(eval $(call test_rules,$d)))
+$(foreach d,$(test_folders) bench bench/void,$(eval $(call test_rules,$d)))
 
 .SECONDARY:
 include $(wildcard $(addsuffix /*.d,$(addprefix $(BUILD)/obj/,* */* */*/* */*/*/*)))
@@ -378,7 +380,7 @@ speed-vs-error: all $(BENCHES) ## error against time, one plot a stage (two minu
 # --- house ----------------------------------------------------------------------------
 
 C_SOURCES := $(wildcard $(foreach d,* */* lib/*/*,stages/$d/*.[ch] stages/$d/*.cpp) tests/*.[ch] \
-	tests/*/*.[ch] tests/bench/void/*.[ch])
+	tests/*/*.[ch] tests/*/*/*.[ch])
 
 .PHONY: format tidy help
 format: ## format the C and C++ sources

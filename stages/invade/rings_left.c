@@ -9,7 +9,7 @@
 //     volume(P) = sum of w_j(P) (P_j / P)^2 volume(P_j),
 // w_j Lagrange's polynomials in ln P through four P_j: rings at contact hold nearly
 // P^-2. Those across gaps end one by one, at suctions of their own, so that the sum
-// over a packing stays smooth. tests/physics/rings_left.t measures the error.
+// over a packing stays smooth. tests/physics/dry/rings_left.t measures the error.
 #include "rings_left.h"
 
 #include "basics/memory.h"

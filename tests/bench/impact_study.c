@@ -7,7 +7,7 @@
 //     impact_study default        steps a contact at the default time step
 //     impact_study oblique        oblique impacts against theories, for
 //     docs/contacts.md impact_study normal         the same for normal ones
-#include "../physics/dem_impact_theory.h"
+#include "../physics/dem/dem_impact_theory.h"
 
 #include <stdio.h>
 #include <string.h>

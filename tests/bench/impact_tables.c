@@ -3,8 +3,8 @@
 // they do not matter, next to what they should give. Columns marked "read" are points
 // of their figures as Kratos' DEM benchmarks hold them (paper_data), good to half a per
 // cent of the axis; the materials and velocities are theirs.
-#include "../physics/dem_impact_materials.h"
-#include "../physics/dem_impact_theory.h"
+#include "../physics/dem/dem_impact_materials.h"
+#include "../physics/dem/dem_impact_theory.h"
 
 #include <stdio.h>
 

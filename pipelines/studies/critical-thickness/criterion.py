@@ -6,7 +6,7 @@ force per width, e the strain, and N' = N/e before anything breaks, a long crack
 releases per area [Tirumkudulu and Russel 2005]
     G = Z (1 + nu) e N
 with Z = 0.98 on a rigid floor at the nu of craquelure-40.json (plane strain, by finite elements:
-tests/physics/critical_thickness.t). It needs at least the energy of the bonds that cross its plane when
+tests/physics/crackstats/critical_thickness.t). It needs at least the energy of the bonds that cross its plane when
 they break, each s^2 A/2k with the strength s, the cross-section A and the stiffness per area k. So no
 crack can run below
     e_G = sqrt(Gamma / (Z (1 + nu) N')).
