@@ -189,6 +189,8 @@ static double expected_porosity(const struct pack_parameters *parameters)
     if (parameters->method == METHOD_DEPOSITION)
         return parameters->dimensions == 2 ? 0.2 : 0.42;
     if (parameters->method == METHOD_SOFT_SPHERES) return 0.4;
+    if (parameters->method == METHOD_EXPLOSIVE_REPULSION)
+        return parameters->dimensions == 2 ? 0.2 : 0.4;
     if (parameters->method == METHOD_RANDOM_SEQUENTIAL) return 0.62;
     return parameters->dimensions == 2 ? 0.17 : 0.37;
 }

@@ -127,7 +127,7 @@ const struct parameter pack_table[] = {
     {"dynamics.density", PARAMETER_NUMBER, "kg/m3", "2500", AT(dynamics.density),
      ABOVE(0), .text = "of the grains"},
     {"dynamics.friction", PARAMETER_NUMBER, "1", "0.5", AT(dynamics.friction),
-     BETWEEN(0, 100), .text = "between grains"},
+     BETWEEN(0, 100), .text = "between grains; explosive_repulsion: always none"},
     {"dynamics.wall_friction", PARAMETER_NUMBER, "1", "null",
      AT(dynamics.wall_friction), BETWEEN(0, 100),
      .text = "at walls; null: as between grains"},

@@ -30,6 +30,25 @@ static void separate_coincident(const struct making *making)
     }
 }
 
+// An engine with a step of SHARE of the usual one, or, where a grain has so many
+// contacts that this would not be stable, a half or less of it; as given, if it is.
+static enum status start(const struct making *making, double stiffness, double share,
+                         const struct dem_wall *wall, int n_wall, struct dem **dem,
+                         struct reason *reason)
+{
+    const struct vector none = {0, 0, 0};
+    const bool given = !isnan(making->how->safety);
+    double safety = share * fixed_safety(making);
+    enum status status;
+    enum { MOST_HALVINGS = 20 };
+    for (int k = 0; k < MOST_HALVINGS; k++, safety /= 2) {
+        status =
+            start_dynamics(making, stiffness, safety, none, wall, n_wall, dem, reason);
+        if (status != STATUS_NOT_CONVERGED || given) return status;
+    }
+    return status;
+}
+
 // Pushes overlapping grains apart, with a time step so short that even a grain on top
 // of another leaves it in steps of a few hundredths of a radius.
 static enum status push_apart(const struct making *making, double stiffness,
@@ -37,9 +56,7 @@ static enum status push_apart(const struct making *making, double stiffness,
                               struct reason *reason)
 {
     struct dem *dem = NULL;
-    const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, 0.1 * fixed_safety(making),
-                                        none, wall, n_wall, &dem, reason);
+    enum status status = start(making, stiffness, 0.1, wall, n_wall, &dem, reason);
     if (status == STATUS_OK) status = dem_run(dem, CYCLES_A_BATCH, reason);
     if (status == STATUS_OK) {
         take_grains(making, dem);
@@ -50,17 +67,52 @@ static enum status push_apart(const struct making *making, double stiffness,
     return status;
 }
 
+// The largest overlap, over the smaller radius.
+static double largest_overlap(const struct making *making, const struct dem *dem)
+{
+    const double *radius = making->packing->radius;
+    double largest = 0;
+    int count;
+    struct dem_contact *contact = dem_contacts(dem, &count);
+    for (int k = 0; k < count; k++) {
+        const int first = contact[k].particle[0], second = contact[k].particle[1];
+        const double smaller =
+            second < 0 ? radius[first] : fmin(radius[first], radius[second]);
+        largest = fmax(largest, contact[k].overlap / smaller);
+    }
+    free(contact);
+    return largest;
+}
+
+// Until the forces of grains that are jammed balance, or grains have parted: these fly
+// on, and what few contacts they have never balances.
+static enum status run_to_rest(const struct making *making, struct dem *dem,
+                               struct reason *reason)
+{
+    enum { LOOK_EVERY = 200 };
+    const struct dynamics_parameters *how = making->how;
+    const double parted = 1e-6;
+    for (int64_t done = 0; done < how->most_cycles; done += LOOK_EVERY) {
+        const enum status status = dem_run(dem, LOOK_EVERY, reason);
+        if (status != STATUS_OK) return status;
+        if (dem_unbalanced_ratio(dem) < how->tolerance ||
+            largest_overlap(making, dem) < parted)
+            return STATUS_OK;
+    }
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "unbalanced ratio %g is not below %g after %lld cycles "
+                  "(pack.dynamics.most_cycles, .tolerance)",
+                  dem_unbalanced_ratio(dem), how->tolerance,
+                  (long long)how->most_cycles);
+}
+
 static enum status come_to_rest(const struct making *making, double stiffness,
                                 const struct dem_wall *wall, int n_wall,
                                 struct reason *reason)
 {
-    const struct dynamics_parameters *how = making->how;
     struct dem *dem = NULL;
-    const struct vector none = {0, 0, 0};
-    enum status status = start_dynamics(making, stiffness, fixed_safety(making), none,
-                                        wall, n_wall, &dem, reason);
-    if (status == STATUS_OK)
-        status = dem_run_until(dem, how->tolerance, how->most_cycles, reason);
+    enum status status = start(making, stiffness, 1, wall, n_wall, &dem, reason);
+    if (status == STATUS_OK) status = run_to_rest(making, dem, reason);
     if (status == STATUS_OK) {
         take_grains(making, dem);
         note_end(making, dem);
@@ -105,7 +157,8 @@ static enum status fill(const struct making *making, int count, double stiffness
     return status;
 }
 
-enum status repel(const struct making *making, int count, struct reason *reason)
+static enum status repel_smooth(const struct making *making, int count,
+                                struct reason *reason)
 {
     struct dem_wall wall[MAX_WALLS];
     const int n_wall = domain_walls(making->domain, making->how, false, wall);
@@ -130,4 +183,14 @@ enum status repel(const struct making *making, int count, struct reason *reason)
         status = come_to_rest(making, stiffness, wall, n_wall, reason);
     if (status != STATUS_OK) packing_free(making->packing);
     return status;
+}
+
+// Without friction, by which grains would hold each other where they overlap.
+enum status repel(const struct making *making, int count, struct reason *reason)
+{
+    struct dynamics_parameters smooth = *making->how;
+    struct making repelling = *making;
+    smooth.friction = smooth.wall_friction = 0;
+    repelling.how = &smooth;
+    return repel_smooth(&repelling, count, reason);
 }

@@ -338,6 +338,16 @@ for settings in ["upper=[10,10,10]", "count=300"], ["dimensions=2", "upper=[10,0
     made = Packing("method=explosive_repulsion", "radius=0.7", *settings)
     ok(made.deepest(*planes(made)) < 0.01 and len(made.r) == int(settings[-1][6:]),
        f"grains that came on top of each other part, {settings[-1]}", made.deepest(*planes(made)))
+# Below the share at which grains jam no overlap is left, whatever the friction; with it grains held each
+# other by a third of a radius. Where some have many contacts at the start, the step is shorter.
+for settings in (["count=500", "upper=[8,8,8]", "sizes.distribution=lognormal", "sizes.spread=0.2", "seed=327"],
+                 ["count=500", "upper=[8,8,8]", "sizes.distribution=normal", "sizes.spread=0.3", ALL, "seed=614"],
+                 ["count=300", "sizes.distribution=normal", "sizes.spread=0.3", ALL, "seed=614"]):
+    made = Packing("method=explosive_repulsion", "radius=0.5", *settings)
+    porosity = 1 - 4 / 3 * np.pi * (made.r**3).sum() / np.prod(made.edge)
+    overlap = made.overlap.max(initial=0) / made.r.min()
+    ok(overlap < (2e-6 if porosity > 0.42 else 0.03), "grains at random places are apart, or jammed with small overlaps",
+       (porosity, overlap))
 at = os.path.join(folder.name, "given.txt")
 given = np.repeat(np.array([[2., 2, 2, 0.5], [2, 2, 5, 1], [5, 5, 5, 0.25]]), 4, axis=0)
 np.savetxt(at, given)
