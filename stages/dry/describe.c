@@ -30,8 +30,8 @@ const char *describe_liquid(const struct drying_conditions *conditions,
         break;
     case LIQUID_VISCOUS:
         snprintf(text, size,
-                 "viscous, Poiseuille flow at %.17g m2/s between moving and stationary "
-                 "menisci [K 3.10], contact angle %.17g degrees; %lld clusters solved "
+                 "viscous, Poiseuille flow at %.9g m2/s between moving and stationary "
+                 "menisci [K 3.10], contact angle %.9g degrees; %lld clusters solved "
                  "in %lld rounds",
                  conditions->viscosity, conditions->contact_angle,
                  (long long)history->flow_solutions, (long long)history->flow_rounds);
@@ -82,7 +82,7 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
     text[0] = '\0';
     if (gravity && conditions->liquid != LIQUID_IMMOBILE)
         snprintf(text, size,
-                 "gravity: %.17g m/s2, contact angle %.17g degrees; menisci at the "
+                 "gravity: %.9g m/s2, contact angle %.9g degrees; menisci at the "
                  "height of their throat's middle\n",
                  conditions->gravity, conditions->contact_angle);
     if (conditions->knudsen) {

@@ -188,7 +188,7 @@ void write_drying(const struct network *network, const struct drying_history *hi
     snprintf(model, sizeof model,
              "vapour: quasi-steady diffusion, linear in ln(1 - p_v/p_g) [K 3.9]\n"
              "boundary layer: %s\n"
-             "boundary layer: %.17g m thick, from %s\n"
+             "boundary layer: %.9g m thick, from %s\n"
              "liquid: %s\n"
              "%s, contact angle %.6g degrees; gas at %.6g Pa, with vapour of %.6g Pa\n"
              "%s"
