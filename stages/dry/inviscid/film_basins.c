@@ -2,10 +2,12 @@
 // With the solution's levels u, the site from which i gets most is
 //     argmax over j of conductance_ij (u_j - u_i),   u_j > u_i,
 // and following these leads to a source. Sites to which nothing flows (films without an
-// end that evaporates) belong to the basin beside them. Clusters of a basin wait in a
+// end that evaporates), or no more than the solution is wrong by, belong to the basin
+// beside them. Clusters of a basin wait in a
 // heap, by their gaps
 //     gap = u - least,
 // 0 at the source; it has the least gap at any time, and levels have fallen by that.
+// All that are held have a gap of 0 at first: of these gas enters one before another.
 // While a single source feeds all films and they have no resistance, this is exact.
 #include "film_basins.h"
 
@@ -18,7 +20,7 @@
 
 struct waiting {
     double gap;
-    int cluster;
+    int turn, cluster;
 };
 
 // A node that films reach, and what it evaporates.
@@ -42,6 +44,7 @@ struct film_basins {
     struct end *end;
     double failing; // what ends at level 0 evaporate
     double *gap;    // (n_cluster)
+    int *turn;      // (n_cluster)
 };
 
 struct film_basins *film_basins_create(int n_place, int n_cluster)
@@ -50,7 +53,8 @@ struct film_basins *film_basins_create(int n_place, int n_cluster)
     *basins = (struct film_basins){.n_place = n_place,
                                    .n_cluster = n_cluster,
                                    .of = NEW_ARRAY(int, n_place),
-                                   .gap = NEW_ARRAY(double, n_cluster)};
+                                   .gap = NEW_ARRAY(double, n_cluster),
+                                   .turn = NEW_ARRAY(int, n_cluster)};
     for (int p = 0; p < n_place; p++)
         basins->of[p] = -1;
     return basins;
@@ -73,6 +77,7 @@ void film_basins_free(struct film_basins *basins)
     free(basins->basin);
     free(basins->of);
     free(basins->gap);
+    free(basins->turn);
     free(basins->end);
     free(basins);
 }
@@ -81,7 +86,8 @@ void film_basins_free(struct film_basins *basins)
 
 static bool is_before(const struct waiting *a, const struct waiting *b)
 {
-    return a->gap < b->gap || (!(b->gap < a->gap) && a->cluster < b->cluster);
+    if (a->gap < b->gap || b->gap < a->gap) return a->gap < b->gap;
+    return a->turn != b->turn ? a->turn < b->turn : a->cluster < b->cluster;
 }
 
 static void push(struct basin *basin, struct waiting new)
@@ -109,11 +115,11 @@ static void pop(struct basin *basin)
 
 // --- finding -----------------------------------------------------------------------
 
-// The site from which I gets most; -1: from none.
-static int upstream(const struct film_flow *flow, int i)
+// The site from which I gets most, more than NOISE; -1: from none.
+static int upstream(const struct film_flow *flow, double noise, int i)
 {
     const struct conductance_matrix *matrix = flow->matrix;
-    double most = 0;
+    double most = noise;
     int best = -1;
     for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
         const int j = matrix->column[k];
@@ -128,10 +134,11 @@ static int upstream(const struct film_flow *flow, int i)
 
 // Levels rise along the way, so it ends. BASIN (n) is -2 where not yet known, and
 // becomes -1 where the way ends without a source.
-static void follow(const struct film_flow *flow, int from, int *up, int *basin)
+static void follow(const struct film_flow *flow, double noise, int from, int *up,
+                   int *basin)
 {
     int end = from;
-    while (basin[end] == -2 && (up[end] = upstream(flow, end)) >= 0)
+    while (basin[end] == -2 && (up[end] = upstream(flow, noise, end)) >= 0)
         end = up[end];
     const int found = basin[end] == -2 ? -1 : basin[end];
     for (int i = from; i != end; i = up[i])
@@ -139,31 +146,57 @@ static void follow(const struct film_flow *flow, int from, int *up, int *basin)
     basin[end] = found;
 }
 
-// Sites without a basin get the one beside them, from all sides at once.
+// The site with a basin that films join best to site I; -1: none.
+static int best_joined(const struct conductance_matrix *matrix, const int *basin, int i)
+{
+    double most = 0;
+    int best = -1;
+    for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
+        const int j = matrix->column[k];
+        if (basin[j] < 0 || !(matrix->value[k] > most)) continue;
+        most = matrix->value[k];
+        best = j;
+    }
+    return best;
+}
+
+// Sites without a basin get the one beside them, from all sides at once, whatever their
+// numbers.
 static void adopt(const struct conductance_matrix *matrix, int *basin)
 {
-    int *queue = NEW_ARRAY(int, matrix->n), n = 0;
-    for (int i = 0; i < matrix->n; i++)
-        if (basin[i] >= 0) queue[n++] = i;
-    for (int next = 0; next < n; next++)
-        for (int k = matrix->offset[queue[next]]; k < matrix->offset[queue[next] + 1];
-             k++) {
-            const int j = matrix->column[k];
-            if (basin[j] >= 0) continue;
-            basin[j] = basin[queue[next]];
-            queue[n++] = j;
-        }
+    int *queue = NEW_ARRAY(int, matrix->n), *found = NEW_ARRAY(int, matrix->n);
+    bool *queued = NEW_ARRAY(bool, matrix->n);
+    int n = 0;
+    for (int i = 0; i < matrix->n; i++) {
+        queued[i] = basin[i] >= 0;
+        if (queued[i]) queue[n++] = i;
+    }
+    for (int first = 0, end = n; first < end; first = end, end = n) {
+        for (int next = first; next < end; next++)
+            for (int k = matrix->offset[queue[next]];
+                 k < matrix->offset[queue[next] + 1]; k++) {
+                const int j = matrix->column[k];
+                if (!queued[j]) queue[n++] = j;
+                queued[j] = true;
+            }
+        for (int next = end; next < n; next++)
+            found[queue[next]] = basin[best_joined(matrix, basin, queue[next])];
+        for (int next = end; next < n; next++)
+            basin[queue[next]] = found[queue[next]];
+    }
     free(queue);
+    free(found);
+    free(queued);
 }
 
 static void enter(struct film_basins *basins, const struct film_flow *flow, int i,
-                  int b)
+                  int turn, int b)
 {
     const int place = flow->place[i];
     const double level = compensated_value(flow->level[i]);
     basins->of[place] = b;
     if (place < basins->n_cluster)
-        film_basins_set(basins, place, b, level - flow->least[i]);
+        film_basins_set(basins, place, b, level - flow->least[i], turn);
     else if (!flow->held[i] && flow->taken[i] > 0) {
         GROW_ARRAY(basins->end, basins->n_end, basins->end_capacity);
         basins->end[basins->n_end++] = (struct end){level, flow->taken[i], b};
@@ -189,7 +222,7 @@ static void sort_ends(struct film_basins *basins)
 }
 
 void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
-                      int n_source, const int *source)
+                      double noise, const int *turn, int n_source, const int *source)
 {
     const int n = flow->matrix->n;
     int *up = NEW_ARRAY(int, n), *of = NEW_ARRAY(int, n);
@@ -202,10 +235,10 @@ void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
         of[source[b]] = b;
     }
     for (int i = 0; i < n; i++)
-        if (of[i] == -2) follow(flow, i, up, of);
+        if (of[i] == -2) follow(flow, noise, i, up, of);
     adopt(flow->matrix, of);
     for (int i = 0; i < n; i++)
-        if (of[i] >= 0) enter(basins, flow, i, of[i]);
+        if (of[i] >= 0) enter(basins, flow, i, turn[i], of[i]);
     sort_ends(basins);
     free(up);
     free(of);
@@ -218,17 +251,20 @@ int film_basins_of(const struct film_basins *basins, int place)
     return basins->of[place];
 }
 
-void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap)
+void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap,
+                     int turn)
 {
     basins->of[cluster] = basin;
     basins->gap[cluster] = gap;
-    if (basin >= 0) push(&basins->basin[basin], (struct waiting){gap, cluster});
+    basins->turn[cluster] = turn;
+    if (basin >= 0) push(&basins->basin[basin], (struct waiting){gap, turn, cluster});
 }
 
 static bool is_outdated(const struct film_basins *basins, int b,
                         const struct waiting *waiting)
 {
     return basins->of[waiting->cluster] != b ||
+           basins->turn[waiting->cluster] != waiting->turn ||
            basins->gap[waiting->cluster] < waiting->gap ||
            basins->gap[waiting->cluster] > waiting->gap;
 }
@@ -293,6 +329,7 @@ static void basin_state(struct basin *basin, int n_end, int n_cluster,
     if (stream->restoring) basin->n = basin->capacity = (int)n;
     for (int k = 0; k < basin->n; k++) {
         stream_numbers(stream, &basin->heap[k].gap, 1);
+        stream_integer(stream, &basin->heap[k].turn, 0, n_cluster - 1);
         stream_integer(stream, &basin->heap[k].cluster, 0, n_cluster - 1);
     }
 }
@@ -312,6 +349,7 @@ void film_basins_state(struct film_basins *basins, struct checkpoint_stream *str
         basin_state(&basins->basin[b], basins->n_end, basins->n_cluster, stream);
     stream_integers(stream, basins->of, basins->n_place, -1, basins->n - 1);
     stream_numbers(stream, basins->gap, basins->n_cluster);
+    stream_integers(stream, basins->turn, basins->n_cluster, 0, basins->n_cluster - 1);
     stream_numbers(stream, &basins->failing, 1);
 }
 

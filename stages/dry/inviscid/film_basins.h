@@ -18,15 +18,18 @@ struct film_basins;
 struct film_basins *film_basins_create(int n_place, int n_cluster);
 void film_basins_free(struct film_basins *basins);
 
-// Of FLOW, solved; SOURCE (N_SOURCE) are the sites that feed others.
+// Of FLOW, solved to NOISE; SOURCE (N_SOURCE) are the sites that feed others, and TURN
+// is as below, of each site that is a cluster.
 void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
-                      int n_source, const int *source);
+                      double noise, const int *turn, int n_source, const int *source);
 
 // The basin of PLACE; -1: none.
 int film_basins_of(const struct film_basins *basins, int place);
 
 // CLUSTER is in BASIN (-1: in none), its level GAP above its least. It does not supply.
-void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap);
+// Of equal gaps the least TURN, from 0 to below N_CLUSTER, is first.
+void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap,
+                     int turn);
 
 // The cluster of BASIN of the least gap, which supplies from now on; -1: none is left.
 int film_basins_supplier(struct film_basins *basins, int basin);

@@ -107,14 +107,25 @@ bool film_supply_may_be_kept(const struct film_supply *films)
 
 // --- finding -----------------------------------------------------------------------
 
+// The throat that CLUSTER empties now or next.
+static int next_throat(const struct emptying_times *times, int cluster)
+{
+    const int timer = times->timer[cluster];
+    const int losing = timer >= 0 ? times->throat[timer] : -1;
+    return losing >= 0 ? losing
+                       : clusters_invasion_throat(&times->occupancy->clusters, cluster);
+}
+
+static int turn_of(const struct emptying_times *times, int cluster)
+{
+    return times->occupancy->clusters.rank[next_throat(times, cluster)];
+}
+
 // The level of films beside CLUSTER.
 static double least_level(const struct emptying_times *times, int cluster)
 {
     struct occupancy *occupancy = times->occupancy;
-    const int timer = times->timer[cluster];
-    const int losing = timer >= 0 ? times->throat[timer] : -1;
-    const int throat =
-        losing >= 0 ? losing : clusters_invasion_throat(&occupancy->clusters, cluster);
+    const int throat = next_throat(times, cluster);
     const double radius = occupancy->film_law->curvature *
                           occupancy->network->throat_radius[throat] / occupancy->length;
     return film_level(occupancy->film_law, radius, film_depth(occupancy, throat));
@@ -211,15 +222,26 @@ static void note_site(struct film_supply *films, int place, int n_throat, double
     }
 }
 
-// Each source has a basin, numbered alike.
-static void find_basins(struct film_supply *films, const struct film_flow *flow,
-                        int n_throat)
+// What may be left of the balances, in all.
+static double tolerance_of(const struct emptying_times *times)
 {
+    return TOLERANCE * vapour_rate(&times->occupancy->vapour);
+}
+
+// Each source has a basin, numbered alike.
+static void find_basins(const struct emptying_times *times,
+                        const struct film_flow *flow, int n_throat)
+{
+    const struct film_supply *films = times->films;
+    int *turn = NEW_ARRAY(int, flow->matrix->n);
     int *site = NEW_ARRAY(int, films->n_source), n = 0;
-    for (int i = 0; i < flow->matrix->n; i++)
-        if (flow->place[i] < n_throat && films->drawn[flow->place[i]] > 0)
-            site[n++] = i;
-    film_basins_find(films->basins, flow, n, site);
+    for (int i = 0; i < flow->matrix->n; i++) {
+        if (flow->place[i] >= n_throat) continue;
+        turn[i] = turn_of(times, flow->place[i]);
+        if (films->drawn[flow->place[i]] > 0) site[n++] = i;
+    }
+    film_basins_find(films->basins, flow, tolerance_of(times), turn, n, site);
+    free(turn);
     free(site);
 }
 
@@ -257,7 +279,7 @@ static bool find_levels(const struct emptying_times *times,
                         struct film_network *network, struct film_flow *flow)
 {
     const struct film_law *law = times->occupancy->film_law;
-    const double tolerance = TOLERANCE * vapour_rate(&times->occupancy->vapour);
+    const double tolerance = tolerance_of(times);
     if (!(law->weight > 0)) return film_flow_solve(flow, tolerance);
     film_network_weigh(network, law, flow->level);
     for (int round = 0; round < MOST_WEIGHED; round++) {
@@ -295,7 +317,7 @@ void film_supply_find(struct emptying_times *times)
         note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
                   flow.surplus[i]);
     }
-    find_basins(films, &flow, n_throat);
+    find_basins(times, &flow, n_throat);
     films->solutions += n > 0;
     free(taken);
     free(least);
@@ -351,7 +373,7 @@ static void set_apart(struct film_supply *films, int cluster)
     films->drawn[cluster] = 0;
     films->floats[cluster] = false;
     films->is_known[cluster] = false;
-    film_basins_set(films->basins, cluster, -1, 0);
+    film_basins_set(films->basins, cluster, -1, 0, 0);
 }
 
 // CLUSTER is, or has parted from, PARENT, and has the level that it had.
@@ -365,7 +387,8 @@ static void let_float(struct emptying_times *times, int cluster, int parent, int
     films->level[cluster] = films->level[parent];
     film_basins_set(films->basins, cluster, basin,
                     compensated_value(films->level[cluster]) -
-                        least_level(times, cluster));
+                        least_level(times, cluster),
+                    turn_of(times, cluster));
 }
 
 // What the basin supplies goes to the cluster whose turn it is.

@@ -22,6 +22,7 @@ static const struct link links[] = {{{A, LEFT}, 1},       {{LEFT, MIDDLE}, 1},
 
 static const double taken[N] = {[LEFT] = 0.25, [MIDDLE] = 1.875, [RIGHT] = 0.5};
 static const double least[N] = {1, 4, 0.4, 1.5};
+static const int turn[N] = {1, 0, 3, 2};
 
 static struct film_basins *basins_of_row(void)
 {
@@ -38,7 +39,7 @@ static struct film_basins *basins_of_row(void)
                                    .held = held,
                                    .level = level};
     struct film_basins *basins = film_basins_create(13, 4);
-    film_basins_find(basins, &flow, 2, source);
+    film_basins_find(basins, &flow, 1e-6, turn, 2, source);
     conductance_matrix_free(&matrix);
     return basins;
 }
@@ -62,12 +63,12 @@ TEST(each_site_belongs_to_what_brings_most)
 TEST(nearest_to_its_least_supplies)
 {
     struct film_basins *basins = basins_of_row();
-    film_basins_set(basins, B, 1, 3);
+    film_basins_set(basins, B, 1, 3, 0);
     assert_int_equal(film_basins_supplier(basins, 1), AT_B);
     assert_within(film_basins_fall(basins, 12), 0.375, 0);
     assert_within(film_basins_fall(basins, 10), 0, 0);
     assert_within(film_basins_failing(basins), 1.875, 0);
-    film_basins_set(basins, B, 1, -1);
+    film_basins_set(basins, B, 1, -1, 0);
     assert_int_equal(film_basins_supplier(basins, 1), B);
     assert_within(film_basins_fall(basins, 12), -1, 0);
     film_basins_free(basins);
@@ -77,13 +78,28 @@ TEST(nearest_to_its_least_supplies)
 TEST(basin_without_clusters)
 {
     struct film_basins *basins = basins_of_row();
-    film_basins_set(basins, A, 0, 2);
-    film_basins_set(basins, A, 0, 0.5);
-    film_basins_set(basins, AT_A, -1, 0);
+    film_basins_set(basins, A, 0, 2, 0);
+    film_basins_set(basins, A, 0, 0.5, 0);
+    film_basins_set(basins, AT_A, -1, 0, 0);
     assert_int_equal(film_basins_supplier(basins, 0), A);
     assert_within(film_basins_failing(basins), 0, 0); // 0.5 is not below 0.5
-    film_basins_set(basins, A, -1, 0);
+    film_basins_set(basins, A, -1, 0, 0);
     assert_int_equal(film_basins_supplier(basins, 0), -1);
+    assert_int_equal(film_basins_supplier(basins, 1), B);
+    film_basins_free(basins);
+}
+
+// Three clusters are at their least: the numbers of clusters do not say which supplies.
+TEST(turn_decides_between_equal_gaps)
+{
+    struct film_basins *basins = basins_of_row();
+    film_basins_set(basins, B, 1, 0, 3);
+    film_basins_set(basins, AT_A, 1, 0, 1);
+    film_basins_set(basins, AT_B, 1, 0, 2);
+    assert_int_equal(film_basins_supplier(basins, 1), AT_A);
+    film_basins_set(basins, AT_A, -1, 0, 0);
+    assert_int_equal(film_basins_supplier(basins, 1), AT_B);
+    film_basins_set(basins, AT_B, -1, 0, 0);
     assert_int_equal(film_basins_supplier(basins, 1), B);
     film_basins_free(basins);
 }
