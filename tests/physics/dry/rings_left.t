@@ -76,6 +76,13 @@ for threads in "1", "2":
 ok(all(filecmp.cmp(at(s + "1"), at(s + "2"), shallow=False) for s in ("isolated", "joined")),
    "one thread and two give the same bytes")
 
+# ---- settled grains, with wide throats at the top: rings there do not grow as the suction falls ----
+
+run("pack", "-q", *sets("method=deposition", "count=60", f"radius={R}"), "-o", at("settled"))
+said = invade(network("network", at("settled"), 0), "rings=joined", "trapping=false", "liquid_in=pores")
+rises = max(np.diff(said["events/saturation"]))
+ok(said["events/pressure"][0] < 0.9 * TENSION / R and rises < 1e-15, "joined, they never fill as the pressure rises", rises)
+
 # ---- lattices: all throats are alike, and empty at one suction ----------------------------
 
 grid = np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
