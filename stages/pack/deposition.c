@@ -151,7 +151,7 @@ static void follow(const struct making *making, struct dem *dem, double height,
                        dem_unbalanced_ratio(dem) < LANDED &&
                        largest_speed(making, dem) < slow;
     const bool falls = settling->landed == 0 && !lands;
-    if (!falls && settling->landed == 0) land_grains(dem);
+    if (!falls && settling->landed == 0) land_grains(making, dem);
     even_steps(dem, falls);
     settling->landed = !falls;
     adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
@@ -179,7 +179,7 @@ static enum status settle(const struct making *making, double height, struct dem
     enum status status =
         restore_dynamics(making, dem, (double *)&settling, SETTLING_NUMBERS, reason);
     if (status != STATUS_OK) return status;
-    if (adapted && settling.landed > 0) land_grains(dem);
+    if (adapted && settling.landed > 0) land_grains(making, dem);
     if (adapted && dem_cycle(dem) == 0)
         adapt_step(dem, true, fall_speed(making, height));
     while (dem_cycle(dem) < making->how->most_cycles) {

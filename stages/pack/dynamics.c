@@ -156,12 +156,13 @@ double drawn_fraction(const struct making *making, int count)
 // The limit is a bound; the rest is for contacts that form before it is found again.
 static const double ADAPTED_SHARE = 0.95;
 
-// The mean grain's mass over the least one's from which radii are wide: fines that met
-// grains of 8000 times their mass in steps near the limit came to rest in another
+// The mean grain's mass over the least one's, from which fines keep their own inertia:
+// with more they settle into looser beds; and from which the step is fixed: fines that
+// met grains of 8000 times their mass in steps near the limit came to rest in another
 // fabric (docs/packings.md). 2000 lognormal radii reach 30 at a spread of about 0.3.
-static const double WIDEST = 30;
+static const double WIDE = 30, WIDEST = 300;
 
-static bool are_wide(const struct packing *packing)
+static double mass_ratio(const struct packing *packing)
 {
     double mean = 0, least = INFINITY;
     for (int i = 0; i < packing->n_particle; i++) {
@@ -169,7 +170,7 @@ static bool are_wide(const struct packing *packing)
         mean += volume / packing->n_particle;
         least = fmin(least, volume);
     }
-    return mean > WIDEST * least;
+    return mean / least;
 }
 
 double fixed_safety(const struct making *making)
@@ -180,7 +181,8 @@ double fixed_safety(const struct making *making)
 
 double step_safety(const struct making *making)
 {
-    return are_wide(making->packing) ? fixed_safety(making) : making->how->safety;
+    return mass_ratio(making->packing) > WIDEST ? fixed_safety(making)
+                                                : making->how->safety;
 }
 
 void adapt_step(struct dem *dem, bool fall, double speed)
@@ -195,9 +197,15 @@ void even_steps(struct dem *dem, bool fall)
     dem_even_steps(dem, fall ? 5 : 3, !fall);
 }
 
-void land_grains(struct dem *dem)
+// Over the mean grain's.
+static double least_mass(const struct making *making)
 {
-    dem_set_least_mass(dem, 1, false);
+    return mass_ratio(making->packing) > WIDE ? 0 : 1;
+}
+
+void land_grains(const struct making *making, struct dem *dem)
+{
+    dem_set_least_mass(dem, least_mass(making), false);
 }
 
 // Damping ratio and stiffness are the same in all methods; what differs is gravity,
@@ -227,7 +235,7 @@ enum status start_dynamics(const struct making *making, double stiffness, double
     if (status != STATUS_OK) return status;
     making->reached->stiffness = stiffness;
     if (!isnan(safety)) return STATUS_OK;
-    if (!statics) dem_set_least_mass(*dem, 1, true);
+    if (!statics) dem_set_least_mass(*dem, least_mass(making), true);
     adapt_step(*dem, true, 0);
     return STATUS_OK;
 }

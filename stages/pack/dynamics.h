@@ -116,16 +116,16 @@ double drawn_fraction(const struct making *making, int count);
 
 // An engine on the packing, between WALLS; STIFFNESS in N/m. SAFETY: of the time step
 // [K 4.47]; NAN: the step is adapted (dem_step_is_adapted), and under gravity no grain
-// has less inertia than the mean one, nor, until land_grains, less weight; the caller
-// calls adapt_step every few hundred cycles. It frees *DEM with dem_free, also after a
-// failure.
+// has less inertia than the mean one, nor, until land_grains, less weight, unless radii
+// are wide; the caller calls adapt_step every few hundred cycles. It frees *DEM with
+// dem_free, also after a failure.
 enum status start_dynamics(const struct making *making, double stiffness, double safety,
                            struct vector gravity, const struct dem_wall *wall,
                            int n_wall, struct dem **dem, struct reason *reason);
 
 // Of the time step [K 4.47], for start_dynamics. As the user says, else fixed_safety:
-// 0.1; step_safety: 0.1 where radii are wide and NAN, an adapted step, where they are
-// not.
+// 0.1; step_safety: 0.1 where radii are very wide and NAN, an adapted step, where they
+// are not.
 double fixed_safety(const struct making *making);
 double step_safety(const struct making *making);
 
@@ -139,7 +139,7 @@ void adapt_step(struct dem *dem, bool fall, double speed);
 void even_steps(struct dem *dem, bool fall);
 
 // Gives grains that have fallen their own weight.
-void land_grains(struct dem *dem);
+void land_grains(const struct making *making, struct dem *dem);
 
 // Restores the checkpoint of a run like this one, if there is one: the engine's state
 // to DEM, the array "protocol" to the COUNT doubles PROTOCOL. STATUS_BAD_DATA: it is
