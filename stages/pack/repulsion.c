@@ -67,6 +67,22 @@ static enum status push_apart(const struct making *making, double stiffness,
     return status;
 }
 
+// Until no grains overlap deeply: they would shoot apart in longer steps. Those that
+// are jammed may go on doing so.
+static enum status push_on(const struct making *making, double stiffness,
+                           const struct dem_wall *wall, int n_wall,
+                           struct reason *reason)
+{
+    enum { MOST_PUSHES = 20 };
+    const double apart = 0.9;
+    enum status status = STATUS_OK;
+    for (int k = 0; k < MOST_PUSHES && fitting_size(making->packing) < apart; k++) {
+        status = push_apart(making, stiffness, wall, n_wall, reason);
+        if (status != STATUS_OK) break;
+    }
+    return status;
+}
+
 // The largest overlap, over the smaller radius.
 static double largest_overlap(const struct making *making, const struct dem *dem)
 {
@@ -176,9 +192,8 @@ static enum status repel_smooth(const struct making *making, int count,
         status = domain_check_filling(making->domain, packing->radius,
                                       packing->n_particle, reason);
         if (status == STATUS_OK) separate_coincident(making);
-        if (status == STATUS_OK)
-            status = push_apart(making, stiffness, wall, n_wall, reason);
     }
+    if (status == STATUS_OK) status = push_on(making, stiffness, wall, n_wall, reason);
     if (status == STATUS_OK)
         status = come_to_rest(making, stiffness, wall, n_wall, reason);
     if (status != STATUS_OK) packing_free(making->packing);

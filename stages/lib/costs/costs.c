@@ -29,7 +29,7 @@
 
 #include <math.h>
 
-static const double START_SECONDS = 0.05, START_MEBIBYTES = 10.5;
+static const double START_SECONDS = 0.03, START_MEBIBYTES = 10.5;
 static const double MEBIBYTE = 1048576;
 
 // Bytes of an artifact.
