@@ -2,9 +2,8 @@
 // With the solution's levels u, the site from which i gets most is
 //     argmax over j of conductance_ij (u_j - u_i),   u_j > u_i,
 // and following these leads to a source. Sites to which nothing flows (films without an
-// end that evaporates), or no more than the solution is wrong by, belong to the basin
-// beside them. Clusters of a basin wait in a
-// heap, by their gaps
+// end that evaporates), or no more than the error of the solution, belong to the basin
+// beside them. Clusters of a basin wait in a heap, by their gaps
 //     gap = u - least,
 // 0 at the source; it has the least gap at any time, and levels have fallen by that.
 // All that are held have a gap of 0 at first: of these gas enters one before another.
@@ -12,7 +11,6 @@
 #include "film_basins.h"
 
 #include "basics/memory.h"
-#include "dry/liquid/clusters.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -304,7 +302,7 @@ int film_basins_count(const struct film_basins *basins)
 
 // --- state -------------------------------------------------------------------------
 
-// Which basin an end is of is told by the range of ends of each basin.
+// Each basin has the range of its ends, so the basin of an end is not written.
 static void ends_state(struct film_basins *basins, struct checkpoint_stream *stream)
 {
     int64_t n = basins->n_end;
@@ -351,12 +349,4 @@ void film_basins_state(struct film_basins *basins, struct checkpoint_stream *str
     stream_numbers(stream, basins->gap, basins->n_cluster);
     stream_integers(stream, basins->turn, basins->n_cluster, 0, basins->n_cluster - 1);
     stream_numbers(stream, &basins->failing, 1);
-}
-
-bool film_basins_fit(const struct film_basins *basins, const struct clusters *clusters)
-{
-    for (int c = 0; c < basins->n_cluster; c++)
-        if (basins->of[c] >= 0 && !(c < clusters->n_id && clusters->size[c] > 0))
-            return false;
-    return true;
 }

@@ -10,7 +10,6 @@
 
 #include "checkpoint/stream.h"
 
-struct clusters;
 struct film_basins;
 
 // For clusters numbered below N_CLUSTER among N_PLACE places. No place is in a basin
@@ -44,6 +43,3 @@ int film_basins_count(const struct film_basins *basins);
 
 // Writes to STREAM, or restores from it, what there is between two solutions.
 void film_basins_state(struct film_basins *basins, struct checkpoint_stream *stream);
-
-// Whether each cluster that waits in a basin has liquid: a restored state may not.
-bool film_basins_fit(const struct film_basins *basins, const struct clusters *clusters);

@@ -33,8 +33,8 @@ static const double MOST_STRAY = 2;
 // that fails for a moment lets rings dry, which stay dry.
 static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
 
-// The factor is forgotten before each so manyth solution, with and without checkpoints:
-// a state that is kept there needs none. At a usual step it would not last longer.
+// After so many solutions the factor is forgotten, with and without checkpoints: a
+// state that is kept there needs none. At a usual step it would not last longer.
 enum { SOLUTIONS_BETWEEN_CUTS = 4 };
 
 // Rounds of levels and conductances under gravity: a few, unless the liquid of a throat
@@ -476,15 +476,20 @@ void film_supply_state(struct emptying_times *times, struct checkpoint_stream *s
     films->failed = false;
 }
 
+static bool has_liquid(const struct clusters *clusters, int cluster)
+{
+    return cluster < clusters->n_id && clusters->size[cluster] > 0;
+}
+
 bool film_supply_fits(const struct emptying_times *times)
 {
     const struct film_supply *films = times->films;
     const struct clusters *clusters = &times->occupancy->clusters;
-    if (film_basins_count(films->basins) != films->n_source) return false;
-    for (int l = 0; l < films->n_source; l++) {
-        const int source = films->source[l];
-        if (source >= 0 && !(source < clusters->n_id && clusters->size[source] > 0))
-            return false;
-    }
-    return film_basins_fit(films->basins, clusters);
+    const int n_throat = times->occupancy->network->n_throat;
+    bool fits = film_basins_count(films->basins) == films->n_source;
+    for (int l = 0; l < films->n_source; l++)
+        fits &= films->source[l] < 0 || has_liquid(clusters, films->source[l]);
+    for (int c = 0; c < n_throat; c++)
+        fits &= film_basins_of(films->basins, c) < 0 || has_liquid(clusters, c);
+    return fits;
 }
