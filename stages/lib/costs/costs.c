@@ -102,7 +102,7 @@ struct cost cost_of_packing(double grains, enum moving moving)
 
 struct cost cost_of_tessellation(double grains)
 {
-    return writes(cost_of(8.5e-5 * grains, 0.0025 * grains),
+    return writes(cost_of(7e-5 * grains, 0.0025 * grains),
                   THROAT_BYTES * body_of_grains(grains).unmerged);
 }
 
