@@ -168,9 +168,11 @@ const struct parameter pack_table[] = {
      .text = "inward_spiral: fill voids with grains that touch three others, down to "
              "sizes.smallest"},
     {"slab.lower", PARAMETER_NUMBER_OR_NULL, "m", "null", AT(slab_lower),
-     .text = "keep only a slab of the packing, of grains with their centres above this "
-             "height: as walls order grains, a rough floor is cut from a thicker "
-             "packing; the box then ends on the slab and does not repeat along z"},
+     .text =
+         "keep only a slab of the packing, of grains with their centres above this "
+         "height: as walls order grains, a rough floor is cut from a thicker "
+         "packing; the box then ends on the slab and does not repeat along z (a side "
+         "that is not cut keeps its wall)"},
     {"slab.upper", PARAMETER_NUMBER_OR_NULL, "m", "null", AT(slab_upper),
      .text = "and below this"},
     {"extra_layer", PARAMETER_BOOLEAN, "1", "false", AT(extra_layer),

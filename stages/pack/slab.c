@@ -4,7 +4,9 @@
 // and what then cracks follows the crystals; a cut leaves a rough floor and top.
 //
 //     stays:  lower <= z <= upper  of the centre, each end only where it is given,
-//     box:    from the lowest to the highest surface of grains that stay.
+//     box:    from the lowest to the highest surface of grains that stay; an end that
+//     is
+//             not cut keeps its wall, if it has one.
 // Grains are compacted in place, in their order. Bonds are dropped, since their grains
 // have other numbers then; they are made anew from contacts (main.c).
 #include "pack.h"
@@ -39,8 +41,9 @@ enum status cut_slab(double lower, double upper, struct domain *domain,
                       "pack.slab: there is no grain between slab.lower and slab.upper");
     packing->n_particle = n;
     packing->n_bond = 0;
-    packing->lower.z = domain->lower.z = low;
-    packing->upper.z = domain->upper.z = high;
+    const bool has_walls = !domain->periodic[2];
+    if (!(has_walls && isnan(lower))) packing->lower.z = domain->lower.z = low;
+    if (!(has_walls && isnan(upper))) packing->upper.z = domain->upper.z = high;
     packing->periodic[2] = domain->periodic[2] = false;
     return STATUS_OK;
 }

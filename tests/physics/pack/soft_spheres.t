@@ -77,6 +77,11 @@ with scratch_paths() as at:
     ends = [(place - radius[:, None])[inside, 2].min(), (place + radius[:, None])[inside, 2].max()]
     ok([slab["domain/lower"][2], slab["domain/upper"][2]] == ends
        and list(slab["domain/periodic"][:]) == [1, 1, 0], "its box ends on them")
+    walls = "periodic=[true,true,false]"
+    whole = pack("whole.h5", walls, "target_value=0.36")
+    slab = pack("slab.h5", walls, "target_value=0.36", f"slab.upper={13 * R}")
+    ok(slab["domain/lower"][2] == whole["domain/lower"][2] and slab["domain/upper"][2] < whole["domain/upper"][2],
+       "a floor that is not cut stays where it is")
     ok(refused("target_value=0.4", f"slab.lower={9 * R}", f"slab.upper={5 * R}"), "upside down: refused")
     ok(refused("target_value=0.4", f"slab.lower={90 * R}"), "without a grain: refused")
     ok(refused("dimensions=2"), "soft discs: refused")
