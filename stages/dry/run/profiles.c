@@ -4,7 +4,11 @@
 // Clusters are found with a disjoint-set forest: liquid throats at a node belong
 // together unless gas has entered the node.
 //
-//     slice[s]  = sum of S V / sum of V,   throats whose middles lie in slice s,
+//     slice[s]  = sum of liquid / sum of V,   throats whose middles lie in slice s,
+//     liquid    = S V;  with rings, of which a throat leaves `left`,
+//                 left + S (V - left)      while it holds liquid,
+//                 left (s_i + s_j) / 2     of the rings at its nodes, once gas has
+//                 come,
 //     surface   = the same over throats with a node on an open wall,
 //     clusters[k] = components of 2^k to 2^(k+1) - 1 throats,
 // with S the saturation of a throat and V its volume. For each level in turn: go_on_to
@@ -14,6 +18,8 @@
 // or below its level. Gas comes to a node only with a throat that has emptied there, so
 // nodes of the open surface join until then, as in struct clusters.
 #include "profiles.h"
+
+#include "ring_history.h"
 
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
@@ -33,6 +39,8 @@ struct snapshot {
     int *size;                   // (n_throat)
     int *first;                  // (n_node) a liquid throat there, -1: none yet
     bool *gas;                   // (n_node)
+    double *left;                // (n_throat) m3 that it leaves in rings; or NULL
+    double *of_rings;            // (n_node) saturation of the rings there; or NULL
 };
 
 // 0 at the open wall, 1 at the one opposite; with several open, from the first.
@@ -55,6 +63,17 @@ static int slice_of(const struct snapshot *snapshot, int throat)
 {
     const int slice = (int)(depth_of(snapshot, throat) * PROFILE_SLICES);
     return slice < 0 ? 0 : slice < PROFILE_SLICES ? slice : PROFILE_SLICES - 1;
+}
+
+static void take_rings(struct snapshot *snapshot, const struct ring_history *rings)
+{
+    const struct network *network = snapshot->network;
+    snapshot->left = NEW_ARRAY(double, network->n_throat);
+    for (int64_t k = 0; k < rings->offset[rings->n]; k++)
+        snapshot->left[rings->throat[k]] += rings->volume[k];
+    snapshot->of_rings = NEW_ARRAY(double, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        snapshot->of_rings[i] = 1;
 }
 
 // Full to begin with; changes of step 0 take off what was missing at the start.
@@ -88,6 +107,20 @@ static void snapshot_free(struct snapshot *snapshot)
     free(snapshot->size);
     free(snapshot->first);
     free(snapshot->gas);
+    free(snapshot->left);
+    free(snapshot->of_rings);
+}
+
+// m3 in THROAT and in what it has left in rings.
+static double liquid_of(const struct snapshot *snapshot, int throat)
+{
+    const double volume = throat_volume(snapshot->network, throat);
+    const double saturation = snapshot->saturation[throat];
+    if (!snapshot->left) return saturation * volume;
+    const double left = snapshot->left[throat];
+    if (saturation > 0) return left + saturation * (volume - left);
+    const int32_t *node = snapshot->network->throat_nodes[throat];
+    return left * (snapshot->of_rings[node[0]] + snapshot->of_rings[node[1]]) / 2;
 }
 
 // The surface is all throats with a node on an open wall. fmin: sums of parts may pass
@@ -98,13 +131,13 @@ static void cut_profile(const struct snapshot *snapshot, double *slice, double *
     double liquid = 0, full = 0;
     for (int t = 0; t < network->n_throat; t++) {
         if (snapshot->slice[t] < 0) continue;
-        const double volume = throat_volume(network, t);
+        const double held = liquid_of(snapshot, t);
         const int32_t *node = network->throat_nodes[t];
-        slice[snapshot->slice[t]] += snapshot->saturation[t] * volume;
+        slice[snapshot->slice[t]] += held;
         if ((network->node_walls[node[0]] | network->node_walls[node[1]]) &
             snapshot->open_walls) {
-            liquid += snapshot->saturation[t] * volume;
-            full += volume;
+            liquid += held;
+            full += throat_volume(network, t);
         }
     }
     for (int s = 0; s < PROFILE_SLICES; s++)
@@ -157,6 +190,11 @@ static void apply_changes(struct snapshot *snapshot,
     for (int64_t c = history->change_offset[step]; c < history->change_offset[step + 1];
          c++)
         snapshot->saturation[history->change_throat[c]] = history->change_saturation[c];
+    const struct ring_history *rings = history->rings;
+    if (!rings) return;
+    for (int64_t c = rings->change_offset[step]; c < rings->change_offset[step + 1];
+         c++)
+        snapshot->of_rings[rings->change_node[c]] = rings->change_saturation[c];
 }
 
 // The first step at or below LEVEL, or the last there is.
@@ -186,6 +224,7 @@ struct profiles profiles_init(const struct network *network,
     for (int s = 0; s < PROFILE_SLICES; s++)
         profiles.depth[s] = (s + 0.5) / PROFILE_SLICES;
     struct snapshot snapshot = snapshot_init(network, open_walls, gas_parts);
+    if (history->rings) take_rings(&snapshot, history->rings);
     int step = 0;
     apply_changes(&snapshot, history, step);
     for (int k = 0; k < n_level; k++) {

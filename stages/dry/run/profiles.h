@@ -19,9 +19,10 @@ struct profiles {
     double *throat_saturation; // (n_level, n_throat); NULL unless asked for
 };
 
-// LEVEL (N_LEVEL) falls from one to the next. A slice without throats has saturation 0.
-// Each throat counts where its middle is. The caller frees the result with
-// profiles_free. O(n_change + n_level * n_throat).
+// Saturations of slices and of the surface count what is in rings too; those of throats
+// do not. LEVEL (N_LEVEL) falls from one to the next. A slice without throats has
+// saturation 0. Each throat counts where its middle is. The caller frees the result
+// with profiles_free. O(n_change + n_level * n_throat).
 struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
                               bool gas_parts, int n_level, const double *level,

@@ -46,6 +46,19 @@ def books(file):
             throats, nodes)
 
 
+def slices_differ(file):
+    """Largest difference of the liquid in slices, in throats and rings, from /profiles; the box is open at the top."""
+    volume, left, throats, _, kept = stores(file)
+    step = np.searchsorted(file["history/time"][:], file["profiles/time"][:])
+    held = np.where(throats > 0, throats * (volume - left) + left, kept)[step]
+    lower, upper = file["domain/lower"][2], file["domain/upper"][2]
+    middle = file["nodes/position"][:, 2][file["throats/nodes"][:]].mean(axis=1)
+    place = np.clip(20 * (upper - middle) / (upper - lower), 0, 19).astype(int)
+    full = np.bincount(place, volume, 20)
+    own = np.array([np.bincount(place, row, 20) for row in held]) / np.where(full > 0, full, 1)
+    return abs(own - file["profiles/slice_saturation"][:]).max()
+
+
 # ---- the books of random packings ---------------------------------------------------------
 
 run("pack", "-q", *sets("method=soft_spheres", "count=100", f"radius={R}", "sizes.distribution=normal",
@@ -58,6 +71,7 @@ for settings in ([], ["liquid=immobile"], ["contact_angle=50"], ["gravity=9.81"]
         summary = dict(file["summary"].attrs)
         ok(total < 1e-12 and alone < 1e-12 and summary["balance_error"] < 1e-12 and summary["residual"] < 1e-12,
            f"{settings or 'inviscid'}: throats, rings and vapour add up at all steps", (total, alone, summary))
+        ok(slices_differ(file) < 1e-12, f"{settings or 'inviscid'}: slices count throats and rings", slices_differ(file))
         ends = file["throats/nodes"][:]
         wet = (nodes < 1)[:, ends].any(axis=2) & (throats > 0)
         ok(not wet.any(), "no rings dry beside a throat that holds liquid", wet.sum())
