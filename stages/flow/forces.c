@@ -37,12 +37,42 @@ static void add_throat(const struct throat *throat, double drop, struct forces *
     }
 }
 
-// The part of a wall that closes a cell has the area, along the wall's normal, of the
-// facet opposite to the wall.
-static void add_wall(const struct cells *cells, const struct throat *throat, int end,
-                     double pressure, struct forces *forces)
+// The middle, along the axes that repeat, of the part of a wall that closes CELL: what
+// corners other than corner WALL span. Between two grains and a second wall it is a
+// trapezium.
+static struct vector middle_of_part(const struct grains *grains,
+                                    const struct pore_cell *cell, int wall)
 {
-    const int32_t *corner = cells->cell[throat->cell[end]].corner;
+    struct vector at[3], sum = {0, 0, 0};
+    int n = 0, other = -1;
+    for (int k = 0; k < 4; k++)
+        if (cell->corner[k] >= 0)
+            at[n++] = corner_position(grains, cell, k);
+        else if (k != wall)
+            other = -1 - cell->corner[k];
+    double share[3] = {1, 1, 1}; // of each corner, in what the middle is
+    if (n == 2) {
+        const double h = wall_distance(grains, at[0], other),
+                     g = wall_distance(grains, at[1], other);
+        if (fabs(h + g) > 0) {
+            share[0] = (2 * h + g) / (1.5 * (h + g));
+            share[1] = (h + 2 * g) / (1.5 * (h + g));
+        }
+    }
+    for (int i = 0; i < n; i++)
+        sum = add(sum, scale(share[i] / n, at[i]));
+    return sum;
+}
+
+// The part of a wall that closes a cell has the area, along the wall's normal, of the
+// facet opposite to the wall. Along axes that repeat, parts are in whatever image their
+// cell has: all count with the mean gradient of the middle of the box.
+static void add_wall(const struct grains *grains, const struct cells *cells,
+                     const struct throat *throat, int end,
+                     const struct pressures *pressures, struct forces *forces)
+{
+    const struct pore_cell *cell = &cells->cell[throat->cell[end]];
+    const int32_t *corner = cell->corner;
     for (int k = 0; k < 4; k++) {
         if (corner[k] >= 0 || corner[k] == throat->corner[0] ||
             corner[k] == throat->corner[1] || corner[k] == throat->corner[2])
@@ -50,6 +80,10 @@ static void add_wall(const struct cells *cells, const struct throat *throat, int
         const int wall = -1 - corner[k];
         const struct vector normal = wall_normal(wall);
         const double inwards = dot(throat->area, normal);
+        const struct vector off =
+            subtract(middle_of_part(grains, cell, k), scale(0.5, grains->box));
+        const double pressure = pore_pressure(pressures, cells, throat->cell[end]) -
+                                dot(pressures->gradient, off);
         add_to(&forces->wall_pressure[wall], pressure * (end == 0 ? -inwards : inwards),
                normal);
     }
@@ -65,10 +99,8 @@ struct forces find_forces(const struct grains *grains, const struct cells *cells
         const struct throat *throat = &throats->throat[t];
         const double drop = pressure_drop(pressures, grains, cells, throat);
         add_throat(throat, drop, &forces);
-        for (int end = 0; end < 2; end++) {
-            const double pressure = pore_pressure(pressures, cells, throat->cell[end]);
-            add_wall(cells, throat, end, pressure, &forces);
-        }
+        for (int end = 0; end < 2; end++)
+            add_wall(grains, cells, throat, end, pressures, &forces);
         add_to(&forces.velocity, throat->conductance * drop,
                throat_step(grains, cells, throat));
     }

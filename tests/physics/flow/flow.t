@@ -236,6 +236,20 @@ with scratch_paths() as at:
         eight = strained(np.vstack([grains + [*corner, 0] for corner in corners]), "eight", [2, 2, 2])
         ok(np.abs(np.tile(drags(as_is), (8, 1)) - drags(eight)).max() < 1e-8 * largest, "  eight boxes are as one")
 
+    # Between walls along which the pressure falls: what presses on them depends neither on the
+    # numbers of grains nor on where the box begins, and balances that on the grains.
+    for repeats in "[true,false,false]", "[true,true,false]":
+        pressed = []
+        for order, by in (np.arange(25), 0), (generator.permutation(25), 0), (np.arange(25), .37):
+            rows = np.column_stack([(grains[order][:, 0] + by) % 1, grains[order][:, 1:]])
+            result = flow(pack(rows, at("between"), periodic=repeats), along="x",
+                          **{"pressure.y_lower": "null", "pressure.y_upper": "null"})
+            pressed.append(result["walls/pressure_force"][:])
+            ok(np.abs(total(result) - [1, 0, 0]).max() < 1e-12, f"between walls, {repeats}: forces are the drop times the section",
+               total(result))
+        ok(np.abs(pressed[0]).max() > 1e-4 and np.ptp(pressed, axis=0).max() < 1e-9 * np.abs(pressed[0]).max(),
+           "  those on the walls are the same of other numbers and from another corner", np.ptp(pressed, axis=0).max())
+
     # Archimedes: grains weigh less by the fluid that they take the place of, and the piezometric
     # pressure knows nothing of it.
     wet = flow(path, density=1000, gravity="[1,0,-9.81]")
