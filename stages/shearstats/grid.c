@@ -93,7 +93,10 @@ static void find_shares(const struct grid_axis *axis, double at, struct shares *
     if (!(fabs(place) < 1e9)) return; // far outside
     const int first = (int)floor(place - reach), last = (int)floor(place + reach);
     if (!(reach > 0)) {
-        add_share(axis, first, 1, shares);
+        const double upper = axis->lower + axis->n * axis->spacing;
+        const bool beside = (at < axis->lower && axis->lower - at <= axis->slack[0]) ||
+                            (at >= upper && at - upper <= axis->slack[1]);
+        add_share(axis, beside && axis->n == 1 ? 0 : first, 1, shares);
         return;
     }
     double below = 0;

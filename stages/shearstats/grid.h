@@ -18,6 +18,7 @@ struct grid_axis {
     bool repeats;      // a side of the box follows the other
     bool reflects;     // at its lower end, 0: the axis of a cylinder
     bool everywhere;   // one interval that all points lie in
+    double slack[2];   // m: points so far beyond an end of one interval lie in it, too
 };
 
 // Cells are numbered with the last axis fastest. In a cylinder the axes are r, the

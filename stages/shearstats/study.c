@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The grid spans all grains in the window of the first motion, and what the kernel
 // reaches beyond them, unless told otherwise; along axes that are not divided,
-// and along those that repeat, the box.
+// and along those that repeat, the box. A single interval that ends at a side of the
+// box has the contacts with a wall there, which lie beyond it by a part of the overlap.
 //
 // Defaults, with d the mean diameter of the free grains: smoothing length d/2, spacing
 // of cells the smoothing length, width of separation classes d/1000, levels from one d
@@ -93,7 +94,7 @@ static struct grid_axis make_axis(const struct motion *motion,
     const double box_lower = component(motion->lower, k);
     const double box_upper = component(motion->upper, k);
     if (cylindrical && k == 1)
-        return (struct grid_axis){0, 2 * M_PI, 1, 0, false, false, true};
+        return (struct grid_axis){.spacing = 2 * M_PI, .n = 1, .everywhere = true};
     double lower = choose(parameters->lower[k], extent->lower[k] - beyond);
     double upper = choose(parameters->upper[k], extent->upper[k] + beyond);
     if (repeats || whole) {
@@ -102,8 +103,18 @@ static struct grid_axis make_axis(const struct motion *motion,
     }
     const bool reflects = cylindrical && k == 0 && lower <= 0;
     if (reflects) lower = 0;
-    if (whole)
-        return (struct grid_axis){lower, upper - lower, 1, 0, repeats, false, repeats};
+    if (whole) {
+        const double near = 1e-9 * (box_upper - box_lower);
+        const bool ends[2] = {fabs(lower - box_lower) <= near,
+                              fabs(upper - box_upper) <= near};
+        return (struct grid_axis){
+            .lower = lower,
+            .spacing = upper - lower,
+            .n = 1,
+            .repeats = repeats,
+            .everywhere = repeats,
+            .slack = {ends[0] ? extent->largest : 0, ends[1] ? extent->largest : 0}};
+    }
     struct grid_axis axis = divided(lower, upper, spacing, reach, repeats);
     axis.reflects = reflects;
     return axis;

@@ -181,6 +181,28 @@ wanted = np.diag([1 / 3] * 3)
 close(np.einsum("c,cab", f["fields/contact_density"], f["fields/fabric"]) / f["fields/contact_density"].sum(),
       wanted, 1e-12, "lattice: isotropic fabric")
 
+# ---- side walls ----------------------------------------------------------------------------
+# Pressed grains touch a wall a little beyond the side of the box. Along an axis that is one
+# interval their forces count as they do where it is divided.
+m = 20
+row = np.stack([rng.uniform(0, 2, m), rng.uniform(0, 1, m), rng.uniform(0, 2, m)], 1)
+wall = rng.integers(0, 4, m)  # x and y, lower and upper
+inwards = np.zeros((m, 3))
+inwards[np.arange(m), wall // 2] = 1 - 2 * (wall % 2)
+row[np.arange(m), wall // 2] = np.choose(wall, [0.048, 1.952, 0.048, 0.952])
+point = row - 0.049 * inwards  # a radius less half the overlap away
+push = rng.normal(size=(m, 3))
+boxed = write_motion(at("boxed"), [row], [0 * row], 0.05, 1.0,
+                     [Contacts(np.stack([np.arange(m), -1 - wall], 1), push, point)],
+                     lower=(0, 0, 0), upper=(2, 1, 2), walls=[(0, 0, 0)] * 4)
+for along in '["x","y","z"]', '["z"]', '["x"]':
+    for room in {}, {"grid__lower": "[0,0,-1]", "grid__upper": "[2,1,3]"}:
+        if room and along != '["z"]':
+            continue
+        f = fields(boxed, coordinates="cartesian", grid__along=along, smoothing_length=0, grid__spacing=0.3, **room)
+        close(np.tensordot(f["grid/volume"], f["fields/traction"], 1), -push.sum(axis=0), 1e-12,
+              f"side walls, cells along {along}{', told' if room else ''}: the traction is that of all walls")
+
 # ---- column under gravity ------------------------------------------------------------------
 m, d, g = 12, 0.1, 9.81
 column = np.stack([np.full(m, 0.5), np.full(m, 0.5), (np.arange(m) + 0.5) * d], 1)
