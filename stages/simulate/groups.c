@@ -104,6 +104,28 @@ static enum status find_members(const struct simulate_parameters *parameters, in
     return STATUS_OK;
 }
 
+// A velocity that nothing would use is a slip: of free grains or of driven ones.
+static enum status check_motion(const struct group_parameters *row, const char *name,
+                                struct reason *reason)
+{
+    const bool moves = norm(as_vector(row->velocity)) > 0 ||
+                       norm(as_vector(row->spin)) > 0 || row->motion.times.count > 0;
+    const bool begins =
+        !isnan(row->initial_velocity[0]) || norm(as_vector(row->initial_spin)) > 0;
+    if (!row->driven && moves)
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "simulate.groups.%s: velocity, spin and motion are for driven=true; "
+            "free grains begin with initial.velocity and initial.spin",
+            name);
+    if (row->driven && begins)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "simulate.groups.%s.initial: must be null or 0 with driven=true, "
+                      "where velocity and spin move the grains",
+                      name);
+    return STATUS_OK;
+}
+
 // The spin is a vector to the user and an axis with a signed rate to the engine, so
 // that a table of time scales one number. Axis and rate of a group that does not turn
 // are 0.
@@ -155,8 +177,10 @@ enum status read_groups(const struct simulate_parameters *parameters,
     scene->driven = NEW_ARRAY(struct dem_group, n);
     enum status status = STATUS_OK;
     for (int k = 0; k < n && !status; k++) {
-        status = find_members(parameters, k, packing, scene, reason);
-        add_driven(group_row(parameters, k), k, scene);
+        const struct group_parameters *row = group_row(parameters, k);
+        status = check_motion(row, parameters->groups.name[k], reason);
+        if (!status) status = find_members(parameters, k, packing, scene, reason);
+        add_driven(row, k, scene);
     }
     if (!status) set_start(parameters, packing, velocity, scene);
     return status;

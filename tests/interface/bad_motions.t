@@ -66,6 +66,10 @@ scene("a group without grains", {"groups": {"a": {"lower": [1, 1, 1]}}},
       r"simulate\.groups\.a: no grain has its centre there")
 scene("a grain that is not there", {"groups": {"a": {"grains": [1e6]}}},
       r"simulate\.groups\.a\.grains: there is no grain 1e\+06 among \d+")
+scene("a velocity of a group that nothing drives", {"groups": {"a": {"grains": [3], "velocity": [0, 0, 1]}}},
+      r"simulate\.groups\.a: velocity, spin and motion are for driven=true; .*")
+scene("a driven group with an initial velocity", {"groups": {"a": {"grains": [3], "driven": True, "initial": {"velocity": [0, 0, 1]}}}},
+      r"simulate\.groups\.a\.initial: must be null or 0 with driven=true, .*")
 scene("a ring without a ring", {"box": {"walls": ["-z"]},
                                 "walls": {"ring": {"shape": "ring", "point": [0, 0, 0], "radius": 1, "inner_radius": 2}}},
       r"packing: simulate\.walls\.ring: needs a radius > 0 and an inner one below it, got 1 and 2")
