@@ -92,8 +92,8 @@ static const struct parameter table[] = {
     {"gravity", PARAMETER_POINT, "m s-2", "[0,0,0]", AT(gravity),
      .text = "acceleration, for buoyancy"},
     {"strain_rate", PARAMETER_POINT, "s-1", "[0,0,0]", AT(strain_rate),
-     .text = "of the box along x, y, z: walls move accordingly, and grains without "
-             "/particles/velocity"},
+     .text = "of the box along x, y, z: its lower walls stand, the upper ones move "
+             "accordingly, and grains without /particles/velocity"},
     {"permeability_tensor", PARAMETER_BOOLEAN, "1", "false", AT(tensor),
      .text = "from three more flows, along x, y and z"},
     {"stokes_drag", PARAMETER_BOOLEAN, "1", "false", AT(stokes),
