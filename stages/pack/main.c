@@ -40,11 +40,12 @@ static const struct stage stage = {
     .most_inputs = 1,
     .parameters = pack_table,
     .estimates = ESTIMATES_SIZES,
-    .notes =
-        "INPUT, with method=import: text of \"x y z r\" lines (# comments), a LAMMPS "
-        "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
-        "packing.h5. With deposition, radius_expansion, domain_contraction and "
-        "explosive_repulsion the same, for grains to begin from.",
+    .notes = "INPUT, with method=import: text of \"x y z r\" lines (# comments; below "
+             "names of columns "
+             "any others, too), a LAMMPS "
+             "dump in text (columns x y z or xu, xs, xsu; radius or diameter), or a "
+             "packing.h5. With deposition, radius_expansion, domain_contraction and "
+             "explosive_repulsion the same, for grains to begin from.",
     .reports = "Write the report of the packing there, as JSON",
     .checkpoints = true};
 

@@ -18,15 +18,26 @@ def imported(title, content, line, *settings):
 imported("a line of three numbers is named", "0 0 0 1\n3 0 0\n",
          "line 2: must be four numbers, x y z r, or a comment, #; has 3 numbers")
 imported("a line of five numbers is named", "# grains\n\n0 0 0 1 1\n",
-         "line 3: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone")
+         "line 3: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone, or name them in a line above")
 imported("decimal commas are named", "1,5;2,5;0,25;0,5\n",
          "line 1: must be four numbers, x y z r, or a comment, #; has 8 numbers; commas are no decimal points here")
 imported("not where commas part columns", "1.5,2.5;0.25,0.5,1\n",
-         "line 1: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone")
+         "line 1: must be four numbers, x y z r, or a comment, #; has 5 numbers; keep the columns x y z r alone, or name them in a line above")
 imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
          "line 2: must be four numbers, x y z r, or a comment, #")
-imported("the names of columns want a #", "x,y,z,r\n0,0,0,1\n",
-         "line 1: must be four numbers, x y z r, or a comment, #; names of columns want a # before them")
+for heading in "x,y,z,d", "x,y,z,x,r", "x_um,y_um,z_um,r_um":
+    imported(f"names of columns that are not those of grains: {heading}", f"{heading}\n0,0,0,1,1\n",
+             "line 1: must be four numbers, x y z r, or a comment, #; names of columns must have x, y, z and r "
+             r"\(or radius\) among them, each once")
+imported("an empty field in a named column is refused", "x,y,z,r\n0,0,,1\n",
+         "line 2: must have a number in column z$")
+imported("a line shorter than its heading is refused", "label x y z r\n1 0 0 0\n",
+         "line 2: must have a number in column r$")
+imported("decimal commas in named columns are named", "x;y;z;r\n1,5;0;0;1\n",
+         "line 2: must have a number in column x; commas are no decimal points here")
+imported("a heading alone holds no grains", "x,y,z,r\n", "no grains")
+imported("a second heading is refused", "x y z r\n0 0 0 1\nx y z r\n",
+         "line 3: must have a number in column x$")
 imported("a negative radius in a text is refused", "0 0 0 -1\n",
          "line 1: the radius must be > 0 m, got -1")
 imported("a radius of zero in a text is refused", "0 0 0 0\n",

@@ -95,6 +95,20 @@ with open(at("windows"), "wb") as file:
     file.write(b"\xef\xbb\xbf" + lines.replace(b"\n", b"\r\n"))
 told = check(at("windows"), *near)[1]
 ok({**told, "inputs": []} == {**check(good, *near)[1], "inputs": []}, "as Windows writes them", told)
+tables = {
+    "columns by name, in CSV": ['Label,"Z [µm]",x,R,y,note'] + [
+        f"{k},{c!r},{a!r},{radius!r},{b!r}," for k, ((a, b, c), radius) in enumerate(zip(x.tolist(), r.tolist()))],
+    "columns by name, between blanks": ["# tomogram 3", "", " id radius  x y z"] + [
+        f"g{k}  {radius!r} {a!r} {b!r}  {c!r}" for k, ((a, b, c), radius) in enumerate(zip(x.tolist(), r.tolist()))]}
+for title, table in tables.items():
+    with open(at("table"), "w") as file:
+        file.write("\n".join(table) + "\n")
+    told = check(at("table"), *near)[1]
+    ok({**told, "inputs": []} == {**check(good, *near)[1], "inputs": []}, title, told["findings"])
+long = b"".join(b"%d 0 0 0.5\n" % k for k in range(20000))
+for title, heading in ("with the mark of Windows", b"\xef\xbb\xbf"), ("with names of columns", b"x y z r\n"):
+    said = subprocess.run([f"{BIN}/check", "-o", "-"], input=heading + long, capture_output=True).stdout
+    ok(said and json.loads(said)["grains"] == 20000, f"all grains of a pipe {title}", said[:99])
 
 # ---- bad ones: what they are called, what pack makes of them, and what mends them ---------
 

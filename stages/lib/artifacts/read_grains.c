@@ -10,6 +10,7 @@
 #include "artifacts/artifact.h"
 #include "basics/status.h"
 #include "formats/grains.h"
+#include "formats/heading.h"
 #include "geometry/radius_unit.h"
 
 #include <stdlib.h>
@@ -44,14 +45,20 @@ static struct packing read_artifact(const char *path, struct bytes image,
     return packing;
 }
 
-// Text of grains begins with a number or a comment: other text may have no end.
+// Text of grains begins with a number, a comment or the names of columns: other text
+// may have no end.
 static bool may_hold_grains(const struct bytes *beginning)
 {
-    size_t k = 0;
+    size_t k = size_of_mark(beginning);
     while (k < beginning->size && strchr(" \t\r\n,;", beginning->data[k]))
         k++;
-    return k == beginning->size || strchr("0123456789+-.#", beginning->data[k]) ||
-           is_hdf5(beginning) || !memcmp(beginning->data, "ITEM", 4);
+    const char *line = (const char *)beginning->data + k;
+    const char *end = memchr(line, '\n', beginning->size - k);
+    struct heading heading;
+    return k == beginning->size || strchr("0123456789+-.#", *line) ||
+           is_hdf5(beginning) || !memcmp(beginning->data, "ITEM", 4) ||
+           read_heading(line, end ? (size_t)(end - line) : beginning->size - k,
+                        &heading);
 }
 
 // An empty standard input gets a line of its own: mostly an input was forgotten. The

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains as text: a line each, x y z radius in m; the box is drawn around them. Numbers
-// are separated by blanks, tabs, commas or semicolons, so CSV without a heading is read
-// as well. Empty lines and comments count when a message names a line.
+// are separated by blanks, tabs, commas or semicolons. A heading, the names of columns,
+// may come first (heading.h). Empty lines and comments count when a message names a
+// line.
 //
 // It is read line by line into arrays that double. The first line that is wrong ends
-// the reading: fewer or more than four numbers, a word, what is not finite, a radius
-// that is not above 0. A file without any grain is refused, too.
+// the reading: fewer or more than four numbers (or no number in a named column), a
+// word, what is not finite, a radius that is not above 0. A file without any grain is
+// refused, too.
 #include "formats/grains.h"
 
 #include "basics/memory.h"
+#include "formats/heading.h"
 
 #include <ctype.h>
 #include <stdlib.h>
@@ -44,23 +47,33 @@ static bool has_decimal_commas(const char *line)
 static const char *advice(const char *line, int count)
 {
     if (has_decimal_commas(line)) return "; commas are no decimal points here";
-    return count > 4 ? "; keep the columns x y z r alone" : "";
+    return count > 4 ? "; keep the columns x y z r alone, or name them in a line above"
+                     : "";
 }
 
-// NUMBER: of the line, from 1. FIRST: no grain has come before, so that words may be
-// the names of columns. Radii are checked last, when they are numbers.
-static enum status check_grain(const char *line, const double grain[4], int count,
-                               int number, bool first, struct reason *reason)
+// A line without names above it has COUNT numbers. NUMBER: of the line, from 1. FIRST:
+// no grain has come before, so that words may be the names of columns.
+static enum status check_count(const char *line, int count, int number, bool first,
+                               struct reason *reason)
 {
     if (count < 0)
         return refuse(reason, STATUS_BAD_DATA,
                       "line %d: must be four numbers, x y z r, or a comment, #%s",
-                      number, first ? "; names of columns want a # before them" : "");
+                      number,
+                      first ? "; names of columns must have x, y, z and r (or radius) "
+                              "among them, each once"
+                            : "");
     if (count != 4)
         return refuse(
             reason, STATUS_BAD_DATA,
             "line %d: must be four numbers, x y z r, or a comment, #; has %d numbers%s",
             number, count, advice(line, count));
+    return STATUS_OK;
+}
+
+// Radii are checked last, when they are numbers.
+static enum status check_grain(const double grain[4], int number, struct reason *reason)
+{
     for (int k = 0; k < 4; k++)
         if (!isfinite(grain[k]))
             return refuse(reason, STATUS_BAD_DATA, "line %d: must be finite, got %g",
@@ -71,6 +84,13 @@ static enum status check_grain(const char *line, const double grain[4], int coun
     return STATUS_OK;
 }
 
+size_t size_of_mark(const struct bytes *text)
+{
+    static const char mark[] = "\xef\xbb\xbf";
+    const size_t size = sizeof mark - 1;
+    return text->size >= size && !memcmp(text->data, mark, size) ? size : 0;
+}
+
 enum status copy_text(const struct bytes *text, char **copy, struct reason *reason)
 {
     if (text->size >= 2 && !memcmp(text->data, "\x1f\x8b", 2))
@@ -78,10 +98,7 @@ enum status copy_text(const struct bytes *text, char **copy, struct reason *reas
     if (memchr(text->data, 0, text->size))
         return refuse(reason, STATUS_BAD_DATA,
                       "holds null bytes: neither text nor HDF5");
-    static const char mark[] = "\xef\xbb\xbf"; // UTF-8, says Windows
-    const size_t marked = sizeof mark - 1;
-    const bool has_mark = text->size >= marked && !memcmp(text->data, mark, marked);
-    const size_t skipped = has_mark ? marked : 0;
+    const size_t skipped = size_of_mark(text);
     *copy = allocate(text->size - skipped + 1, 1);
     memcpy(*copy, (const char *)text->data + skipped, text->size - skipped);
     return STATUS_OK;
@@ -103,6 +120,29 @@ void box_around(struct packing *packing)
     }
 }
 
+// The grain of a line, under a heading or not.
+static enum status read_grain(const char *line, const struct heading *heading,
+                              int number, bool first, double grain[4],
+                              struct reason *reason)
+{
+    const char *missing = heading ? read_named_numbers(line, heading, grain) : NULL;
+    if (missing)
+        return refuse(reason, STATUS_BAD_DATA,
+                      "line %d: must have a number in column %s%s", number, missing,
+                      has_decimal_commas(line) ? "; commas are no decimal points here"
+                                               : "");
+    const enum status status =
+        heading ? STATUS_OK
+                : check_count(line, read_numbers(line, grain), number, first, reason);
+    return status ? status : check_grain(grain, number, reason);
+}
+
+static bool is_blank(const char *line)
+{
+    line += strspn(line, " \t\r,;");
+    return !*line || *line == '#';
+}
+
 // copy_text first, because strsep cuts lines in place and strtod needs an end. O(n).
 enum status import_text(const struct bytes *text, struct packing *packing,
                         struct reason *reason)
@@ -112,14 +152,21 @@ enum status import_text(const struct bytes *text, struct packing *packing,
     enum status status = copy_text(text, &copy, reason);
     if (status) return status;
     int capacity = 0, number = 0;
+    bool first = true, is_named = false;
+    struct heading heading;
     char *rest = copy;
     for (char *line; !status && (line = strsep(&rest, "\n"));) {
         double grain[4] = {0};
-        const int count = read_numbers(line, grain);
         number++;
-        if (count == 0) continue;
-        status = check_grain(line, grain, count, number, !packing->n_particle, reason);
+        if (is_blank(line)) continue;
+        const bool names = first && read_heading(line, strlen(line), &heading);
+        is_named = is_named || names;
+        if (!names)
+            status = read_grain(line, is_named ? &heading : NULL, number, first, grain,
+                                reason);
+        first = false;
         if (status) break;
+        if (names) continue;
         if (packing->n_particle == capacity) {
             capacity = capacity ? 2 * capacity : 64;
             packing->position = reallocate(packing->position, (size_t)capacity,

@@ -11,14 +11,18 @@
 #include "basics/status.h"
 #include "geometry/packing.h"
 
-// Grains from text, one "x y z r" a line in metres; "#" begins a comment. The box is
-// theirs (lowest and highest grain surfaces). STATUS_BAD_DATA with the line in REASON.
-// On success the caller frees *PACKING.
+// Grains from text, one "x y z r" a line in metres, perhaps below the names of columns
+// (heading.h); "#" begins a comment. The box is theirs (lowest and highest grain
+// surfaces). STATUS_BAD_DATA with the line in REASON. On success the caller frees
+// *PACKING.
 enum status import_text(const struct bytes *text, struct packing *packing,
                         struct reason *reason);
 
 // Walls where the grains end.
 void box_around(struct packing *packing);
+
+// Of the mark with which Windows begins text in UTF-8; 0 without one.
+size_t size_of_mark(const struct bytes *text);
 
 // A copy that ends with a null, without the mark of UTF-8, for the caller to free;
 // STATUS_BAD_DATA when there are nulls within.
