@@ -141,10 +141,10 @@ void judge_bonds(const struct packing *packing, const struct bond_facts *facts, 
             "a bond): %s",
             facts->largest, n, facts->pieces, facts->without, what);
     if (!packing->n_bond || packing->periodic[2] || facts->at_bottom >= 3) return;
-    add_finding(
-        findings, FINDING_NOTE, "support",
-        "%d grain%s the lower z wall, all that dem-replay holds by default: "
-        "dem-replay.held (see suggested) holds those with centres below %.3g m, or "
-        "support=free",
-        facts->at_bottom, facts->at_bottom == 1 ? " touches" : "s touch", bottom);
+    add_finding(findings, FINDING_NOTE, "support",
+                "%d grain%s the lower z wall, all that dem-replay holds by default: "
+                "hold those with centres below %.3g m by dem-replay.held, or "
+                "none by support=free",
+                facts->at_bottom, facts->at_bottom == 1 ? " touches" : "s touch",
+                bottom);
 }

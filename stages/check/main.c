@@ -85,7 +85,7 @@ static void judge_defaults(const struct packing_facts *facts, struct findings *f
     add_finding(
         findings, FINDING_NOTE, "defaults",
         "dem-replay's defaults are for radii of 250 nm, these are %.3g times as large: "
-        "say stiffnesses and strengths (see suggested)",
+        "say stiffnesses and strengths (suggested where nothing is wrong)",
         ratio);
 }
 
@@ -93,9 +93,11 @@ static void judge_defaults(const struct packing_facts *facts, struct findings *f
 static void judge_free(const struct packing_facts *facts, struct findings *findings)
 {
     if (!facts->free || facts->n < 2) return;
-    add_finding(findings, FINDING_NOTE, "free",
-                "%d of %d grains touch%s neither grain nor wall", facts->free, facts->n,
-                facts->free == 1 ? "es" : "");
+    add_finding(
+        findings, FINDING_NOTE, "free",
+        "%d of %d grains touch%s neither grain nor wall: dem-replay lets them go, "
+        "unless a wider pack.touching_gap bonds them",
+        facts->free, facts->n, facts->free == 1 ? "es" : "");
 }
 
 // Below this share of the capillary forces weight changes little. The larger of both

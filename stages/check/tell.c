@@ -2,15 +2,15 @@
 // Both outputs are made from the same struct checked, so that they cannot differ.
 //
 // Text goes to memory first and out in one piece. Suggestions and cost are left out
-// where something is wrong, since they would be of the wrong grains.
+// where more is wrong than overlaps, since they would be of the wrong grains.
 //
 // Numbers for people have three digits, those for programs all.
 //
 //     SEVERITY: NAME: text             a line each finding, the worst first
 //     grains, box, contacts, bonds     what was measured; not without grains
-//     suggested, weight, cost          only where nothing is wrong; suggested is what
-//                                      dem-replay takes by --set
-//     nothing is wrong                 likewise
+//     suggested, weight, cost          only where no more is wrong than overlaps;
+//                                      suggested is what dem-replay takes by --set
+//     nothing is wrong
 //
 // JSON has the same under wrong, findings, grains, radius, box, weight, contacts,
 // bonds, suggested, cost (schemas/check.json). Lengths are in m; weights are Bond
@@ -22,6 +22,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const char *const severities[] = {"note", "wrong", "impossible"};
 
@@ -31,6 +32,16 @@ int count_wrong(const struct findings *findings)
     for (int k = 0; k < findings->count; k++)
         wrong += findings->item[k].severity != FINDING_NOTE;
     return wrong;
+}
+
+// Overlaps change neither sizes nor bonds.
+static bool may_suggest(const struct findings *findings)
+{
+    for (int k = 0; k < findings->count; k++)
+        if (findings->item[k].severity != FINDING_NOTE &&
+            strcmp(findings->item[k].name, "overlaps"))
+            return false;
+    return true;
 }
 
 // ---- for people ---------------------------------------------------------------------
@@ -130,7 +141,7 @@ void tell(const struct checked *checked, int wrong)
         fprintf(out, "%s: %s: %s\n", severities[checked->findings->item[k].severity],
                 checked->findings->item[k].name, checked->findings->item[k].text);
     if (checked->facts->n) tell_facts(checked, out);
-    if (!wrong) tell_suggested(checked, out);
+    if (may_suggest(checked->findings)) tell_suggested(checked, out);
     if (!wrong) fprintf(out, "nothing is wrong\n");
     fclose(out);
     write_whole("-", text, size);
@@ -186,6 +197,7 @@ static json_t *box_json(const struct checked *checked)
 json_t *checked_json(const struct checked *checked, int wrong)
 {
     const struct packing_facts *facts = checked->facts;
+    const bool no_advice = !may_suggest(checked->findings);
     json_t *document = json_object();
     json_object_set_new(document, "schema", json_string("craquelure/check/1"));
     json_object_set_new(document, "wrong", json_integer(wrong));
@@ -208,10 +220,10 @@ json_t *checked_json(const struct checked *checked, int wrong)
                   "max_overlap", facts->overlap, "overlapping", facts->overlapping,
                   "coincident", facts->coincident, "free", facts->free));
     json_object_set_new(document, "bonds", bonds_json(checked));
-    json_object_set_new(document, "suggested",
-                        wrong ? json_null()
-                              : suggest(checked->material, checked->packing, facts));
+    json_object_set_new(
+        document, "suggested",
+        no_advice ? json_null() : suggest(checked->material, checked->packing, facts));
     json_object_set_new(document, "cost",
-                        wrong ? json_null() : expected_cost(facts->n));
+                        no_advice ? json_null() : expected_cost(facts->n));
     return document;
 }

@@ -146,7 +146,9 @@ for title, position, radius, box, wrong, packed, mends in BAD:
     status, report, agree = check(at("bad.h5"), *near)
     ok(status == 1 and names(report) == wrong and agree, f"{title}: check says so",
        (status, report["findings"]))
-    ok(report["suggested"] is None, f"{title}: nothing is suggested for it")
+    ok((report["suggested"] is None) == (report["cost"] is None) == (wrong != ["overlaps"]),
+       f"{title}: {'suggestions all the same' if wrong == ['overlaps'] else 'nothing is suggested for it'}",
+       report["suggested"])
     told = {f["name"]: f["text"] for f in report["findings"]}
     if "units" in wrong:
         ok(not {"defaults", "weight"} & set(told) and (not mends[0].startswith("import.scale=1e-") or f"pack.{mends[0]}" in told["units"]),

@@ -143,8 +143,10 @@ static void judge_overlaps(const struct packing_facts *facts, struct findings *f
         add_finding(findings, FINDING_WRONG, "overlaps",
                     "%d of %d grains overlap by more than %g of the smaller radius, "
                     "rows %d and "
-                    "%d by %.3g: leave one of two out, or part them by "
-                    "pack.method=explosive_repulsion",
+                    "%d by %.3g: leave one of two out, part them "
+                    "(pack.method=explosive_repulsion, then bond over the gaps by "
+                    "pack.touching_gap), or keep them (they press only with "
+                    "prestress=true)",
                     facts->overlapping, facts->n, OVERLAP_MOST, worst[0], worst[1],
                     facts->overlap);
     else if (facts->overlapping)
