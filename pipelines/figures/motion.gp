@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Grains as they move, and sums over them. Variables: tables, the folder of the tables that
-# pipelines/figures/motion makes; frames, times, the frame of the view (m), the last time and
-# whether groups are driven.
+# pipelines/figures/motion makes; frames, times, the frame of the view (m), the last time, and
+# whether there are walls and driven groups.
 wide = right - left
 high = top - bottom
 columns = wide > 2 * high ? 2 : 4
@@ -48,7 +48,7 @@ set yrange [0:*]
 set bmargin at screen 80. / page
 set tmargin at screen 255. / page
 set xlabel "time / s"
-set key top right opaque samplen 1.5
+set key at graph 1, graph 1.14 right horizontal samplen 1.5
 set format y "%.3g"
 set lmargin at screen 0.09
 set rmargin at screen 0.47
@@ -58,6 +58,6 @@ plot tables . "/history" using 1:2 with lines linewidth 2 linecolor rgb blue tit
 set lmargin at screen 0.60
 set rmargin at screen 0.98
 set ylabel "largest force / N" offset 1,0
-plot tables . "/history" using 1:4 with lines linewidth 2 linecolor rgb blue title "on a wall", \
+plot tables . "/history" using 1:(walls ? $4 : NaN) with lines linewidth 2 linecolor rgb blue title (walls ? "on a wall" : ""), \
     "" using 1:(driven ? $5 : NaN) with lines linewidth 2 linecolor rgb red title (driven ? "on a driven group" : "")
 unset multiplot
