@@ -13,7 +13,7 @@ unset SCENE RUN THREADS PACK TESSELLATE MERGE_NODES DRY FORCE_PROTOCOL DEM_REPLA
 cat >stage <<'END'
 #!/bin/bash
 # The key "unseen" of its section does not show in its output.
-name=${0##*/} sets=() inputs=()
+name=${0##*/} sets=() inputs=() checkpoint=''
 while (( $# )); do
     case $1 in
     --version) echo "$name $(<"$(dirname "$0")/$name.version")"; exit ;;
@@ -24,20 +24,31 @@ while (( $# )); do
     -p) scene=$2; shift ;;
     --set) sets+=("$2"); shift ;;
     -o) output=$2; shift ;;
+    --checkpoint=*) checkpoint=${1#*=} ;;
     *) inputs+=("$1") ;;
     esac
     shift
 done
 echo "$name" >>ran
+if [[ -e $checkpoint ]]; then
+    cat "$checkpoint" >>ran
+    [[ $(<"$checkpoint") != damaged ]] || exit 65
+fi
 [[ -e fail-$name ]] && exit 3
 [[ -e slow-$name ]] && { touch slow; sleep 2.1; }
-[[ -e hang-$name ]] && { echo half >"$output"; touch hangs; sleep 60; }
+[[ -e hang-$name ]] && {
+    echo half >"$output"
+    [[ ! $checkpoint ]] || echo continues >"$checkpoint"
+    touch hangs
+    sleep 60
+}
 {
     echo "$name ${sets[*]}"
     jq -cS --arg name "$name" '.[$name] // {}
         | walk(if type == "object" then del(.comment, .unseen) else . end)' "$scene"
     for input in "${inputs[@]}"; do [[ -d $input ]] || echo "$(<"$input")"; done
 } >"$output"
+[[ ! -e $checkpoint ]] || rm "$checkpoint"
 END
 chmod +x stage
 all='pack tessellate merge-nodes dry force-protocol dem-replay crackstats'
@@ -147,19 +158,61 @@ rm fail-dem-replay
 is 'and runs once it can' 'dem-replay crackstats' "$(ran)"
 runs_nothing 'after a failure'
 
-touch hang-dry
-rm -f hangs
+# killed COMMAND...: kills it, and all that it began, where dry hangs
+killed()
+{
+    touch hang-dry hang-mydry
+    rm -f hangs
+    setsid "$@" >said 2>&1 &
+    local leader=$! i
+    disown # its death is not news
+    for (( i = 0; i < 300; i++ )); do [[ -e hangs ]] && break; sleep 0.1; done
+    kill -9 -- -$leader
+    rm hang-dry hang-mydry
+}
+
 edit '.dry.liquid = "immobile"'
-setsid make run SCENE=$scene >said 2>&1 &
-leader=$!
-disown # its death is not news
-for (( i = 0; i < 300; i++ )); do [[ -e hangs ]] && break; sleep 0.1; done
-kill -9 -- -$leader
-rm hang-dry
-is 'after kill -9 make goes on from where it was' \
-    'dry force-protocol dem-replay crackstats' "$(ran)"
+killed make run SCENE=$scene
+is 'after kill -9 make goes on from the checkpoint' \
+    'dry continues force-protocol dem-replay crackstats' "$(ran)"
 runs_nothing 'after kill -9'
-is 'and nothing is left over' "" "$(find $x -name '.*')"
+is 'and nothing is left over' "" "$(find $x -name '.*' -o -name '*.unfinished*')"
+
+edit '.dry.liquid = "viscous"'
+killed make run SCENE=$scene
+edit '.dry.liquid = "inviscid" | .dry.seed = 2'
+is 'with another parameter it begins anew' \
+    'dry force-protocol dem-replay crackstats' "$(ran)"
+is 'and the old checkpoint goes' "" "$(find $x -name '*.unfinished*')"
+
+edit '.dry.seed = 3'
+killed make run SCENE=$scene
+echo damaged >"$(echo $x/drying.h5.unfinished-*)"
+is 'after a damaged checkpoint it begins anew' \
+    'dry damaged dry force-protocol dem-replay crackstats' "$(ran)"
+
+edit '.dry.seed = 4'
+killed make run SCENE=$scene
+touch fail-dry
+ran >failed
+rm fail-dry
+is 'an error ends what was begun' 'dry force-protocol dem-replay crackstats' "$(ran)"
+
+cp stage mydry
+echo 1 >mydry.version
+killed make run SCENE=$scene DRY=./mydry
+is 'the own program keeps none' "" "$(find $x -name '*.unfinished*')"
+
+chain() { tools/memo run stage=chain version=1 output=chained -- \
+    build/bin/pack -p $scene -o @packing --then build/bin/dry -p $scene @packing -o chained; }
+export -f chain
+export scene
+killed bash -c chain
+: >ran
+chain >said
+is 'of several stages one after the other each keeps its own' 'pack dry continues' "$(names <ran)"
+edit 'del(.dry.seed) | .dry.liquid = "immobile"'
+ran >said
 
 cp stage mydry
 echo 1 >mydry.version
@@ -203,7 +256,7 @@ is 'many artifacts: all made' 6 "$(find build/runs/many -name '*.h5' | wc -l)"
 is 'many artifacts: all current' 0 "$(make -q many SCENE=$scene; echo $?)"
 rm build/runs/many/3.h5
 is 'many artifacts: one is not' "$(printf '  RUN   %s' build/runs/many/3.h5)" \
-    "$(make many SCENE=$scene)"
+    "$(make many SCENE=$scene | grep -v TOOK)"
 
 # Two at once on one scene.
 edit '.dry.liquid = "viscous"'
