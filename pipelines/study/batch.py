@@ -13,7 +13,7 @@ import cost
 from common import refuse
 
 SCRIPT = """#!/bin/bash
-# {name}: {runs} runs, of which each of {tasks} jobs makes its share. Submitted again, it makes what is missing.
+# {name}: {runs} runs. Each job makes its share. Submitted again, it makes what is missing.
 #SBATCH --job-name={name}
 #SBATCH --array=1-{tasks}
 #SBATCH --ntasks=1
