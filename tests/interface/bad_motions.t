@@ -26,6 +26,8 @@ scene("a linear material without stiffness", {"law": "linear"},
       r"simulate\.materials\.glass\.normal_stiffness: must be given with law=linear")
 scene("timed contacts without their time", {"law": "timed"},
       r"simulate\.contact_time: must be given with law=timed")
+scene("exact bridges in every cycle are refused", {"bridges": {"volume": 1e-12, "model": "exact"}},
+      r".*bridges\.model=exact is too slow for each bridge in each cycle: bridges\.model=table interpolates the same .*")
 scene("adhesion with liquid is refused", {"adhesion": 0.1, "bridges": {"volume": 1e-12}},
       r"simulate\.adhesion: must be 0 with liquid bridges .*")
 scene("adhesion of springs that are no Hertz contacts is refused", {

@@ -166,8 +166,8 @@ static enum status check_liquid(const struct dem_liquid *l, struct reason *reaso
         {"volume of bridges", l->volume, 0, no_limit, true, false}};
     if (l->model == BRIDGE_EXACT)
         return refuse(reason, STATUS_BAD_DATA,
-                      "the exact solution is too slow for each bridge in each cycle: "
-                      "its table is as good");
+                      "bridges.model=exact is too slow for each bridge in each cycle: "
+                      "bridges.model=table interpolates the same solution");
     return CHECK(quantity, reason);
 }
 
