@@ -203,6 +203,16 @@ echo 1 >mydry.version
 killed make run SCENE=$scene DRY=./mydry
 is 'the own program keeps none' "" "$(find $x -name '*.unfinished*')"
 
+cp tools/memo memo-itself
+rm -f begun
+tools/memo run stage=s version=1 output=long -- bash -c 'touch begun; sleep 1; echo made >"$0"' long >said 2>&1 & long=$!
+for (( i = 0; i < 300; i++ )); do [[ -e begun ]] && break; sleep 0.1; done
+{ echo '#!/bin/bash'; printf '(%.0s' {1..30000}; } >tools/memo
+wait $long; status=$?
+is 'a newer memo does not spoil what the older one is making' '0 made' \
+    "$status $(cat long 2>/dev/null)"
+cp memo-itself tools/memo
+
 chain() { tools/memo run stage=chain version=1 output=chained -- \
     build/bin/pack -p $scene -o @packing --then build/bin/dry -p $scene @packing -o chained; }
 export -f chain
