@@ -14,6 +14,7 @@
 // order the grains by where the box repeats; some seconds for 1e4 to 1e5 grains.
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
+#include "geometry/space_filling_curve.h"
 #include "pack.h"
 
 #include <math.h>
@@ -24,7 +25,8 @@ static const double OVERLAP = 1e-6, AT_REST = 1e-2;
 enum { MOST_STEPS = 5000 };
 
 struct relaxation {
-    struct packing *packing;                    // in mean radii
+    struct packing *packing;                    // in mean radii, along a curve
+    double edge[3];                             // of the box where it repeats, else 0
     struct vector *force, *velocity, *searched; // (n) the last: where pairs were sought
     int32_t (*pair)[2];
     int n_pair;
@@ -65,9 +67,22 @@ static void push_off_walls(struct relaxation *r)
                 packing->radius[i] - (at - component(packing->lower, axis));
             const double above =
                 packing->radius[i] - (component(packing->upper, axis) - at);
-            const double push = 2 * (fmax(below, 0) - fmax(above, 0));
-            set_component(&r->force[i], axis, component(r->force[i], axis) + push);
+            const double push = (below > 0 ? below : 0) - (above > 0 ? above : 0);
+            set_component(&r->force[i], axis, component(r->force[i], axis) + 2 * push);
         }
+}
+
+// From grain I to the nearest image of grain J.
+static inline struct vector apart(const struct relaxation *r, int i, int j)
+{
+    const struct vector *position = r->packing->position;
+    struct vector between = subtract(position[j], position[i]);
+    for (int axis = 0; axis < 3; axis++) {
+        const double edge = r->edge[axis], along = component(between, axis);
+        if (edge > 0 && fabs(along) > edge / 2)
+            set_component(&between, axis, along - edge * rint(along / edge));
+    }
+    return between;
 }
 
 // In the order of the pairs. Returns the largest overlap. Coincident centres part along
@@ -81,16 +96,16 @@ static double find_forces(struct relaxation *r)
         r->force[i] = (struct vector){0, 0, 0};
     for (int p = 0; p < r->n_pair; p++) {
         const int i = r->pair[p][0], j = r->pair[p][1];
-        const struct vector apart = nearest_image(packing, i, j);
+        const struct vector between = apart(r, i, j);
         const double touching = packing->radius[i] + packing->radius[j];
-        const double square = dot(apart, apart);
+        const double square = dot(between, between);
         if (square >= touching * touching) continue;
         const double d = sqrt(square), overlap = touching - d;
         const struct vector along =
-            d > 0 ? scale(overlap / d, apart) : (struct vector){overlap, 0, 0};
+            d > 0 ? scale(overlap / d, between) : (struct vector){overlap, 0, 0};
         r->force[i] = subtract(r->force[i], along);
         r->force[j] = add(r->force[j], along);
-        largest = fmax(largest, overlap);
+        if (overlap > largest) largest = overlap;
         sum += overlap;
         r->n_contact++;
     }
@@ -171,6 +186,23 @@ static enum status relax(struct relaxation *r, const struct domain *domain,
         MOST_STEPS, s.mean_force / r->contact_force);
 }
 
+// ---- order --------------------------------------------------------------------------
+
+// Grain k becomes what grain ORDER[k] was, or the other way round.
+static void reorder(struct packing *packing, const int32_t *order, bool back)
+{
+    const size_t n = (size_t)packing->n_particle;
+    struct vector *position = duplicate(packing->position, n, sizeof *position);
+    double *radius = duplicate(packing->radius, n, sizeof *radius);
+    for (int k = 0; k < packing->n_particle; k++) {
+        const int to = back ? order[k] : k, from = back ? k : order[k];
+        packing->position[to] = position[from];
+        packing->radius[to] = radius[from];
+    }
+    free(position);
+    free(radius);
+}
+
 // ---- units --------------------------------------------------------------------------
 
 static void rescale(struct packing *packing, struct domain *domain, double unit)
@@ -223,7 +255,15 @@ enum status soft_spheres(const struct domain *domain, const struct sizes *sizes,
                            .force = NEW_ARRAY(struct vector, count),
                            .velocity = NEW_ARRAY(struct vector, count),
                            .searched = NEW_ARRAY(struct vector, count)};
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis])
+            r.edge[axis] =
+                component(packing->upper, axis) - component(packing->lower, axis);
+    int32_t *order = order_along_curve(count, packing->position);
+    reorder(packing, order, false);
     status = relax(&r, &scaled, progress, reason);
+    reorder(packing, order, true);
+    free(order);
     rescale(packing, &scaled, sum);
     packing->lower = domain->lower;
     packing->upper = domain->upper;

@@ -4,6 +4,7 @@
 //
 //     placing          a n
 //     moving           a n^(4/3)      cycles grow with the height, n^(1/3)
+//     relaxation       a n            of soft spheres
 //     tessellation     a n
 //     merging          a N
 //     drying           N (a + b m + d m^2) + e c       d m^2: products of links, of
@@ -91,11 +92,12 @@ struct cost cost_of_packing(double grains, enum moving moving)
     static const double constant[] = {[MOVING_BY_GRAVITY] = 1.5e-4,
                                       [MOVING_BY_COMPRESSION] = 5.5e-5,
                                       [MOVING_BY_OVERLAPS] = 1.2e-4,
-                                      [MOVING_BY_RELAXATION] = 3.5e-5};
+                                      [MOVING_BY_RELAXATION] = 2.2e-4};
+    const double power = moving == MOVING_BY_RELAXATION ? 1 : 4.0 / 3;
     const struct cost cost =
         moving == MOVING_NOT
             ? cost_of(1e-5 * grains, 5e-5 * grains)
-            : within(constant[moving] * pow(grains, 4.0 / 3), 3, 3,
+            : within(constant[moving] * pow(grains, power), 3, 3,
                      (moving == MOVING_BY_RELAXATION ? 1e-4 : 0.0025) * grains);
     return writes(cost, GRAIN_BYTES * grains);
 }

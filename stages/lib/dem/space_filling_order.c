@@ -1,98 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Grains numbered along Hilbert's curve, so that neighbours in space are neighbours in
 // memory. Small scenes fit in the cache in any order and keep the one they came in. In
-// order: keys of all grains on a cubic grid of 2^BITS cells a side; sorted; arrays of
-// grains moved; pairs, walls and bonds relabelled, with their histories. A pair whose
-// grains change places has its history turned round (carry_over).
+// order: arrays of grains moved; pairs, walls and bonds relabelled, with their
+// histories. A pair whose grains change places has its history turned round
+// (carry_over).
 #include "dem/engine.h"
 
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
+#include "geometry/space_filling_curve.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LEAST_TO_ORDER = 4096, BITS = 10 };
+enum { LEAST_TO_ORDER = 4096 };
 
-// Position of a cell on the curve through 2^BITS cells along each axis (Skilling 2004).
-static uint32_t hilbert_key(uint32_t x[3])
+// The order of the grains where they are now.
+static int32_t *order_now(const struct dem *dem)
 {
-    for (uint32_t q = 1u << (BITS - 1); q > 1; q >>= 1)
-        for (int axis = 0; axis < 3; axis++) {
-            const uint32_t low = q - 1;
-            if (x[axis] & q) {
-                x[0] ^= low;
-                continue;
-            }
-            const uint32_t swap = (x[0] ^ x[axis]) & low;
-            x[0] ^= swap;
-            x[axis] ^= swap;
-        }
-    x[1] ^= x[0];
-    x[2] ^= x[1];
-    uint32_t turn = 0;
-    for (uint32_t q = 1u << (BITS - 1); q > 1; q >>= 1)
-        if (x[2] & q) turn ^= q - 1;
-    uint32_t key = 0;
-    for (int bit = BITS - 1; bit >= 0; bit--)
-        for (int axis = 0; axis < 3; axis++)
-            key = key << 1 | ((x[axis] ^ turn) >> bit & 1);
-    return key;
-}
-
-struct keyed {
-    uint32_t key;
-    int32_t grain;
-};
-
-static int by_key(const void *a, const void *b)
-{
-    const struct keyed *p = a, *q = b;
-    const int order = (p->key > q->key) - (p->key < q->key);
-    return order ? order : (p->grain > q->grain) - (p->grain < q->grain);
-}
-
-// Sorts grains along the curve, in cubic cells, so that no axis is preferred.
-static struct keyed *along_curve(const struct dem *dem)
-{
-    const int n = dem->n_particle;
-    double lower[3], edge = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        double least = INFINITY, most = -INFINITY;
-        for (int i = 0; i < n; i++) {
-            const double x = component(position_now(dem, i), axis);
-            least = fmin(least, x);
-            most = fmax(most, x);
-        }
-        lower[axis] = least;
-        edge = fmax(edge, most - least);
-    }
-    struct keyed *order = NEW_ARRAY(struct keyed, n);
-    const double cells = edge > 0 ? ((1 << BITS) - 1) / edge : 0;
-    for (int i = 0; i < n; i++) {
-        uint32_t x[3];
-        for (int axis = 0; axis < 3; axis++)
-            x[axis] = (uint32_t)((component(position_now(dem, i), axis) - lower[axis]) *
-                                 cells);
-        order[i] = (struct keyed){hilbert_key(x), i};
-    }
-    qsort(order, (size_t)n, sizeof *order, by_key);
+    struct vector *place = NEW_ARRAY(struct vector, dem->n_particle);
+    for (int i = 0; i < dem->n_particle; i++)
+        place[i] = position_now(dem, i);
+    int32_t *order = order_along_curve(dem->n_particle, place);
+    free(place);
     return order;
 }
 
-// ARRAY[k] becomes what ARRAY[order[k].grain] was.
-static void reorder(void *array, size_t size, const struct keyed *order, int n)
+// ARRAY[k] becomes what ARRAY[order[k]] was.
+static void reorder(void *array, size_t size, const int32_t *order, int n)
 {
     if (!array) return;
     char *old = duplicate(array, (size_t)n, size), *new = array;
     for (int k = 0; k < n; k++)
-        memcpy(new + (size_t)k *size, old + (size_t)order[k].grain * size, size);
+        memcpy(new + (size_t)k *size, old + (size_t)order[k] * size, size);
     free(old);
 }
 #define REORDER(array) reorder(array, sizeof *(array), order, dem->n_particle)
 
-static void reorder_grains(struct dem *dem, const struct keyed *order)
+static void reorder_grains(struct dem *dem, const int32_t *order)
 {
     REORDER(dem->id);
     REORDER(dem->start);
@@ -165,11 +110,11 @@ static int by_wall(const void *a, const void *b)
     return order ? order : (p->wall > q->wall) - (p->wall < q->wall);
 }
 
-static void renumber(struct dem *dem, const struct keyed *order)
+static void renumber(struct dem *dem, const int32_t *order)
 {
     int32_t *new_number = NEW_ARRAY(int32_t, dem->n_particle);
     for (int k = 0; k < dem->n_particle; k++)
-        new_number[order[k].grain] = k;
+        new_number[order[k]] = k;
     reorder_grains(dem, order);
     for (int b = 0; b < dem->n_bond; b++)
         relabel(dem->bond_particle[b], new_number);
@@ -187,16 +132,16 @@ void renumber_grains(struct dem *dem)
     dem->searches_in_order = 0;
     if (dem->n_particle < LEAST_TO_ORDER) return;
     close_pair_ledger(dem);
-    struct keyed *order = along_curve(dem);
+    int32_t *order = order_now(dem);
     renumber(dem, order);
     free(order);
 }
 
 void set_grain_order(struct dem *dem, const int32_t *id)
 {
-    struct keyed *order = NEW_ARRAY(struct keyed, dem->n_particle);
+    int32_t *order = NEW_ARRAY(int32_t, dem->n_particle);
     for (int k = 0; k < dem->n_particle; k++)
-        order[k].grain = dem->index[id[k]];
+        order[k] = dem->index[id[k]];
     renumber(dem, order);
     free(order);
 }

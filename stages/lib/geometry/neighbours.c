@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pairs of near spheres of any range of sizes: spheres are sorted into levels of size,
 // a grid for each, with cells at least as wide as two of its largest reaches; every
-// sphere looks in the grids of its own and larger levels, in neighbouring cells only.
-// O(n) for each level. Pairs come sorted.
+// sphere looks in the grids of its own and larger levels, in neighbouring cells only,
+// and in its own level at later members only. O(n) for each level. Spheres are taken in
+// the order of the cells, whatever their own order, and pairs are sorted at the end.
 //     level = floor(log2(largest / reach)), 15 at most; width = 2 largest / 2^level;
 //     near: |x_j - x_i|, by the nearest image, <= reach_i + reach_j.
 // Threads take spheres by shares of fixed size, and each share keeps its own list, so
@@ -10,7 +11,6 @@
 #include "geometry/neighbours.h"
 
 #include "basics/memory.h"
-#include "basics/simd.h"
 #include "geometry/linked_cells.h"
 
 #include <stdbool.h>
@@ -19,17 +19,12 @@
 
 enum { MOST_LEVELS = 16 };
 
-struct member {
-    struct vector position;
-    double reach;
-    int32_t index;
-};
-
 // The spheres of one level of sizes, in cells at least as wide as two of the largest
 // reaches among them, so that whoever is no larger meets them in neighbouring cells.
 struct grid {
     struct linked_cells cells;
-    struct member *member; // in the order of the cells, side by side in memory
+    int members;
+    double *at[3], *reach; // (members) in the order of the cells
 };
 
 struct pairs {
@@ -40,28 +35,33 @@ struct pairs {
 static struct grid fill_grid(const struct spheres *all, const uint8_t *level, int which,
                              double width)
 {
-    int members = 0;
+    struct grid grid = {0};
     int *chosen = NEW_ARRAY(int, all->count);
     for (int i = 0; i < all->count; i++)
-        if (level[i] == which) chosen[members++] = i;
+        if (level[i] == which) chosen[grid.members++] = i;
     struct box_of_places box;
     memcpy(box.lower, all->lower, sizeof box.lower);
     memcpy(box.period, all->period, sizeof box.period);
-    struct grid grid = {
-        linked_cells_init(&box, all->count, all->position, members, chosen, width),
-        NEW_ARRAY(struct member, members)};
-    for (int k = 0; k < members; k++) {
-        const int i = grid.cells.member[k];
-        grid.member[k] = (struct member){all->position[i], all->reach[i], i};
-    }
+    grid.cells =
+        linked_cells_init(&box, all->count, all->position, grid.members, chosen, width);
     free(chosen);
+    grid.reach = NEW_ARRAY(double, grid.members);
+    for (int k = 0; k < grid.members; k++)
+        grid.reach[k] = all->reach[grid.cells.member[k]];
+    for (int axis = 0; axis < 3; axis++) {
+        grid.at[axis] = NEW_ARRAY(double, grid.members);
+        for (int k = 0; k < grid.members; k++)
+            grid.at[axis][k] = component(all->position[grid.cells.member[k]], axis);
+    }
     return grid;
 }
 
 static void free_grid(struct grid *grid)
 {
     linked_cells_free(&grid->cells);
-    free(grid->member);
+    free(grid->reach);
+    for (int axis = 0; axis < 3; axis++)
+        free(grid->at[axis]);
 }
 
 // The cells around X along an axis, each once; how many.
@@ -106,53 +106,81 @@ static int ranges_around(const struct linked_cells *cells, struct vector place,
     return ranges;
 }
 
-SIMD_INLINE double apart_square(const struct spheres *all, struct vector apart,
-                                bool repeats)
-{
-    if (!repeats) return dot(apart, apart);
-    double square = 0;
-    for (int axis = 0; axis < 3; axis++) {
-        const double period = all->period[axis];
-        double along = component(apart, axis);
-        if (period > 0) along -= period * rint(along / period);
-        square += along * along;
-    }
-    return square;
-}
+// Members are looked at in chunks, so that vectors take several at once.
+enum { CHUNK = 32 };
 
-// Adds the pairs of sphere I with members of GRID in RANGE; of its own level only the
-// later ones. REPEATS: the box does.
-SIMD_INLINE void meet_range(const struct spheres *all, const struct grid *grid,
-                            struct member_range range, int i, bool own_level,
-                            bool repeats, struct pairs *found)
+// Adds the squares of the distances along an axis, by the nearest image.
+static void add_squares(const double *at, int n, double from, double period,
+                        double square[CHUNK])
 {
-    const struct vector from = all->position[i];
-    const double reach = all->reach[i];
-    for (int m = range.begin; m < range.end; m++) {
-        const struct member *member = &grid->member[m];
-        const double both = reach + member->reach;
-        const double square =
-            apart_square(all, subtract(member->position, from), repeats);
-        const int j = member->index;
-        if (!(square <= both * both) || (own_level && j <= i)) continue;
-        GROW_ARRAY(found->pair, found->count, found->capacity);
-        found->pair[found->count][0] = i < j ? i : j;
-        found->pair[found->count++][1] = i < j ? j : i;
+    if (!(period > 0)) {
+        for (int k = 0; k < n; k++)
+            square[k] += (at[k] - from) * (at[k] - from);
+        return;
+    }
+    const double per_period = 1 / period;
+    for (int k = 0; k < n; k++) {
+        double along = at[k] - from;
+        along -= period * rint(along * per_period);
+        square[k] += along * along;
     }
 }
 
+// Those of N members from BEGIN on that are near sphere I; how many.
+static int near_in_chunk(const struct spheres *all, const struct grid *grid, int begin,
+                         int n, int i, int near[CHUNK])
+{
+    double square[CHUNK] = {0}, most[CHUNK];
+    for (int axis = 0; axis < 3; axis++)
+        add_squares(grid->at[axis] + begin, n, component(all->position[i], axis),
+                    all->period[axis], square);
+    for (int k = 0; k < n; k++) {
+        const double both = all->reach[i] + grid->reach[begin + k];
+        most[k] = both * both;
+    }
+    int count = 0;
+    for (int k = 0; k < n; k++) {
+        near[count] = begin + k;
+        count += square[k] <= most[k];
+    }
+    return count;
+}
+
+static void add_pair(struct pairs *found, int i, int j)
+{
+    GROW_ARRAY(found->pair, found->count, found->capacity);
+    found->pair[found->count][0] = i < j ? i : j;
+    found->pair[found->count++][1] = i < j ? j : i;
+}
+
+// Adds the pairs of sphere I with members of GRID, of which it meets those from FIRST
+// on.
 static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
-                      bool own_level, struct pairs *found)
+                      int first, struct pairs *found)
 {
-    const double *period = all->period;
-    const bool repeats = period[0] > 0 || period[1] > 0 || period[2] > 0;
     struct member_range range[27];
     const int n = ranges_around(&grid->cells, all->position[i], range);
-    for (int k = 0; k < n; k++)
-        if (repeats)
-            meet_range(all, grid, range[k], i, own_level, true, found);
-        else
-            meet_range(all, grid, range[k], i, own_level, false, found);
+    for (int r = 0; r < n; r++)
+        for (int begin = range[r].begin > first ? range[r].begin : first;
+             begin < range[r].end; begin += CHUNK) {
+            const int left = range[r].end - begin;
+            int near[CHUNK];
+            const int count =
+                near_in_chunk(all, grid, begin, left < CHUNK ? left : CHUNK, i, near);
+            for (int k = 0; k < count; k++)
+                add_pair(found, i, grid->cells.member[near[k]]);
+        }
+}
+
+// Adds the pairs of member K of LEVEL: with all larger spheres, and with those of its
+// own level that come later in the order of the cells.
+static void meet_all(const struct spheres *all, const struct grid *grid, int level,
+                     int k, struct pairs *found)
+{
+    const int i = grid[level].cells.member[k];
+    meet_grid(all, &grid[level], i, k + 1, found);
+    for (int l = 0; l < level; l++)
+        meet_grid(all, &grid[l], i, 0, found);
 }
 
 int compare_pairs(const void *a, const void *b)
@@ -218,6 +246,26 @@ static uint8_t *find_levels(const struct spheres *all, int *levels, double *larg
     return level;
 }
 
+// What a thread takes at a time.
+struct share {
+    int level, begin, end; // members
+};
+
+static struct share *shares_of(const struct grid *grid, int levels, int *count)
+{
+    enum { SIZE = 4096 };
+    *count = 0;
+    for (int l = 0; l < levels; l++)
+        *count += (grid[l].members + SIZE - 1) / SIZE;
+    struct share *share = NEW_ARRAY(struct share, *count);
+    for (int l = 0, n = 0; l < levels; l++)
+        for (int begin = 0; begin < grid[l].members; begin += SIZE) {
+            const int left = grid[l].members - begin;
+            share[n++] = (struct share){l, begin, begin + (left < SIZE ? left : SIZE)};
+        }
+    return share;
+}
+
 int32_t (*near_pairs(const struct spheres *all, int *count))[2]
 {
     int levels;
@@ -227,18 +275,18 @@ int32_t (*near_pairs(const struct spheres *all, int *count))[2]
     for (int l = 0; l < levels; l++)
         grid[l] = fill_grid(all, level, l, ldexp(2 * largest, -l));
 
-    enum { SHARE = 4096 };
-    const int parts = (all->count + SHARE - 1) / SHARE;
+    int parts;
+    struct share *share = shares_of(grid, levels, &parts);
     struct pairs *part = NEW_ARRAY(struct pairs, parts);
 #pragma omp parallel for num_threads(all->threads) schedule(dynamic, 1)
     for (int t = 0; t < parts; t++)
-        for (int i = t * SHARE; i < (t + 1) * SHARE && i < all->count; i++)
-            for (int l = level[i]; l >= 0; l--)
-                meet_grid(all, &grid[l], i, l == level[i], &part[t]);
+        for (int k = share[t].begin; k < share[t].end; k++)
+            meet_all(all, grid, share[t].level, k, &part[t]);
 
     for (int l = 0; l < levels; l++)
         free_grid(&grid[l]);
     free(level);
+    free(share);
     int32_t(*pair)[2] = merge(part, parts, all->count, count);
     free(part);
     return pair;
