@@ -22,7 +22,7 @@
 
 static const double SKIN = 0.15; // of the sum of two radii
 static const double OVERLAP = 1e-6, AT_REST = 1e-2;
-enum { MOST_STEPS = 5000 };
+enum { MOST_STEPS = 5000, LEAST_TO_ORDER = 150000 };
 
 struct relaxation {
     struct packing *packing;                    // in mean radii, along a curve
@@ -188,9 +188,19 @@ static enum status relax(struct relaxation *r, const struct domain *domain,
 
 // ---- order --------------------------------------------------------------------------
 
+// Neighbours in space become neighbours in memory; fewer grains fit in the cache in any
+// order, and keep theirs.
+static int32_t *order_of(const struct packing *packing)
+{
+    return packing->n_particle < LEAST_TO_ORDER
+               ? NULL
+               : order_along_curve(packing->n_particle, packing->position);
+}
+
 // Grain k becomes what grain ORDER[k] was, or the other way round.
 static void reorder(struct packing *packing, const int32_t *order, bool back)
 {
+    if (!order) return;
     const size_t n = (size_t)packing->n_particle;
     struct vector *position = duplicate(packing->position, n, sizeof *position);
     double *radius = duplicate(packing->radius, n, sizeof *radius);
@@ -259,7 +269,7 @@ enum status soft_spheres(const struct domain *domain, const struct sizes *sizes,
         if (packing->periodic[axis])
             r.edge[axis] =
                 component(packing->upper, axis) - component(packing->lower, axis);
-    int32_t *order = order_along_curve(count, packing->position);
+    int32_t *order = order_of(packing);
     reorder(packing, order, false);
     status = relax(&r, &scaled, progress, reason);
     reorder(packing, order, true);

@@ -16,7 +16,10 @@ set style fill solid 1 noborder
 set ylabel "z, µm" offset 1,0 textcolor "#222222"
 set lmargin at screen 0.06
 set rmargin at screen 0.49
-set title "a slice: broken in tension (black), in shear (amber)" textcolor "#222222"
+set label 1 "a slice: broken in tension (black), in shear (amber)" at screen 0.06, 0.98 textcolor "#222222"
+stats slice using 2 name "z" nooutput
+stats slice using 1 name "x" nooutput
+if (z_max - z_min > 2 * (x_max - x_min)) { set xtics (x_min, x_max) format "%.0f" }
 plot slice using 1:2:3 with circles linecolor rgb "#dddddd", \
     cracks using 1:2:3:($5 == 0 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb tension, \
     cracks using 1:2:3:($5 == 1 ? $4 : NaN) with vectors nohead linewidth 3 linecolor rgb shear
@@ -29,6 +32,7 @@ set palette defined (0 wet_to_dry(0), 1 wet_to_dry(1))
 set cbrange [0:1]
 set colorbox horizontal user origin screen 0.625, 0.055 size screen 0.3, 0.02
 set cbtics ("1" 0, "0.75" 0.25, "0.5" 0.5, "0.25" 0.75, "0" 1) scale 0
+set xtics autofreq
 set label 1 "saturation at which it broke" at screen 0.775, 0.095 center textcolor "#222222"
 plot tables . "/all" using 1:2:(1 - $3) with points pointtype 7 pointsize (broken < 1000 ? 0.9 : 0.5) linecolor palette
 unset multiplot

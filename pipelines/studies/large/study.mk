@@ -3,20 +3,21 @@
 #
 #     make large                  ->  build/runs/large/large.md, large.png
 #     make large GRAINS=5000
+#     make large LARGE_SCENE=samples/column-1000000.json  ->  build/runs/large-column-1000000/ (an hour of one core, 6 GiB)
 
-GRAINS ?= 50000
+LARGE_SCENE ?= samples/irregular-50000.json
+GRAINS ?=# instead of as many as the scene says
 
-large_scene := samples/irregular-50000.json
-large_folder := $(RUNS)/large
+large_folder := $(RUNS)/large$(if $(filter-out %/irregular-50000.json,$(LARGE_SCENE)),-$(basename $(notdir $(LARGE_SCENE))))
 
 # Stage $2, program $3, of the scene, with overrides $4 and inputs $5; its cost is kept.
-large_step = $(call step,$(large_folder)/$1,$2,pipelines/studies/large/timed $3,$(large_scene),$4,$(5:%=$(large_folder)/%))
+large_step = $(call step,$(large_folder)/$1,$2,pipelines/studies/large/timed $3,$(LARGE_SCENE),$4,$(5:%=$(large_folder)/%))
 
 large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (six minutes of two cores)
 
 ifneq ($(call asked,large,$(large_folder)),)
-$(call must,GRAINS,$(whole),a whole number)
-$(call large_step,packing.h5,pack,$(PACK),count=$(GRAINS),)
+$(if $(GRAINS),$(call must,GRAINS,$(whole),a whole number))
+$(call large_step,packing.h5,pack,$(PACK),$(GRAINS:%=count=%),)
 $(call large_step,tessellation.h5,tessellate,$(TESSELLATE),,packing.h5)
 $(call large_step,network.h5,merge-nodes,$(MERGE_NODES),,tessellation.h5)
 $(call large_step,drying.h5,dry,$(DRY),,network.h5)

@@ -164,7 +164,7 @@ static void meet_grid(const struct spheres *all, const struct grid *grid, int i,
         for (int begin = range[r].begin > first ? range[r].begin : first;
              begin < range[r].end; begin += CHUNK) {
             const int left = range[r].end - begin;
-            int near[CHUNK];
+            int near[CHUNK] = {0};
             const int count =
                 near_in_chunk(all, grid, begin, left < CHUNK ? left : CHUNK, i, near);
             for (int k = 0; k < count; k++)
