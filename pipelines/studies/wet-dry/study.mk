@@ -11,7 +11,7 @@ WET_DRY_SEEDS ?= 1 2 3# of the packings
 wet_dry := $(RUNS)/wet-dry
 wet_dry_scene := samples/craquelure-40.json
 
-wet-dry: ## cracks that heal and open again over wet and dry cycles (a quarter of an hour of one core)
+wet-dry: ## cracks that heal and open again over wet and dry cycles (twenty minutes of one core)
 
 ifneq ($(call asked,wet-dry,$(wet_dry)),)
 $(call must,WET_DRY_CYCLES,[1-9][0-9]?,a whole number below 100)
