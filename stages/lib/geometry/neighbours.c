@@ -13,7 +13,6 @@
 #include "basics/memory.h"
 #include "geometry/linked_cells.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
