@@ -229,7 +229,7 @@ struct cost cost_of_drainage(const struct body_size *body, double ramp, double l
 struct cost cost_of_equilibria(const struct body_size *body, bool friction)
 {
     const double work = body->grains * body->grains * body->loads;
-    return writes(within((friction ? 3e-6 : 1e-7) * work, 30, 5,
+    return writes(within((friction ? 3e-6 : 1e-7) * work, 30, 10,
                          replay_mebibytes(body) + 0.1 * body->grains),
                   response_bytes(body));
 }
