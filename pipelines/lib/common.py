@@ -96,6 +96,13 @@ def with_unit(x, unit):
     return f"{x / 10.0 ** (3 * k - 18):.3g} {['a', 'f', 'p', 'n', 'µ', 'm', '', 'k', 'M'][k]}{unit}"
 
 
+def spread(values, digits=4):
+    """Mean and, of several values, standard deviation."""
+    import numpy as np
+    said = f"{np.mean(values):.{digits}f}"
+    return f"{said} ± {np.std(values, ddof=1):.{digits}f}" if len(values) > 1 else said
+
+
 def row(*cells):
     """A line of a Markdown table."""
     return f"| {' | '.join(map(str, cells))} |"

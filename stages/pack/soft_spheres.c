@@ -26,7 +26,6 @@ enum { MOST_STEPS = 5000, LEAST_TO_ORDER = 150000 };
 
 struct relaxation {
     struct packing *packing;                    // in mean radii, along a curve
-    double edge[3];                             // of the box where it repeats, else 0
     struct vector *force, *velocity, *searched; // (n) the last: where pairs were sought
     int32_t (*pair)[2];
     int n_pair;
@@ -72,19 +71,6 @@ static void push_off_walls(struct relaxation *r)
         }
 }
 
-// From grain I to the nearest image of grain J.
-static inline struct vector apart(const struct relaxation *r, int i, int j)
-{
-    const struct vector *position = r->packing->position;
-    struct vector between = subtract(position[j], position[i]);
-    for (int axis = 0; axis < 3; axis++) {
-        const double edge = r->edge[axis], along = component(between, axis);
-        if (edge > 0 && fabs(along) > edge / 2)
-            set_component(&between, axis, along - edge * rint(along / edge));
-    }
-    return between;
-}
-
 // In the order of the pairs. Returns the largest overlap. Coincident centres part along
 // x.
 static double find_forces(struct relaxation *r)
@@ -96,13 +82,13 @@ static double find_forces(struct relaxation *r)
         r->force[i] = (struct vector){0, 0, 0};
     for (int p = 0; p < r->n_pair; p++) {
         const int i = r->pair[p][0], j = r->pair[p][1];
-        const struct vector between = apart(r, i, j);
+        const struct vector apart = nearest_image(packing, i, j);
         const double touching = packing->radius[i] + packing->radius[j];
-        const double square = dot(between, between);
+        const double square = dot(apart, apart);
         if (square >= touching * touching) continue;
         const double d = sqrt(square), overlap = touching - d;
         const struct vector along =
-            d > 0 ? scale(overlap / d, between) : (struct vector){overlap, 0, 0};
+            d > 0 ? scale(overlap / d, apart) : (struct vector){overlap, 0, 0};
         r->force[i] = subtract(r->force[i], along);
         r->force[j] = add(r->force[j], along);
         if (overlap > largest) largest = overlap;
@@ -265,10 +251,6 @@ enum status soft_spheres(const struct domain *domain, const struct sizes *sizes,
                            .force = NEW_ARRAY(struct vector, count),
                            .velocity = NEW_ARRAY(struct vector, count),
                            .searched = NEW_ARRAY(struct vector, count)};
-    for (int axis = 0; axis < 3; axis++)
-        if (packing->periodic[axis])
-            r.edge[axis] =
-                component(packing->upper, axis) - component(packing->lower, axis);
     int32_t *order = order_of(packing);
     reorder(packing, order, false);
     status = relax(&r, &scaled, progress, reason);

@@ -112,8 +112,3 @@ class Layer:
         self.crack = self.tension * self.height / self.slope
         self.griffith = self.griffith_strain(self.toughness)
         self.wet_griffith = self.griffith_strain(self.toughness + self.surfaces)
-
-
-def spread(values, digits=4):
-    said = f"{np.mean(values):.{digits}f}"
-    return f"{said} ± {np.std(values, ddof=1):.{digits}f}" if len(values) > 1 else said

@@ -309,16 +309,3 @@ int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count)
     free(reach);
     return pair;
 }
-
-struct vector nearest_image(const struct packing *packing, int i, int j)
-{
-    struct vector apart = subtract(packing->position[j], packing->position[i]);
-    for (int axis = 0; axis < 3; axis++) {
-        if (!packing->periodic[axis]) continue;
-        const double edge =
-            component(packing->upper, axis) - component(packing->lower, axis);
-        const double along = component(apart, axis);
-        set_component(&apart, axis, along - edge * round(along / edge));
-    }
-    return apart;
-}

@@ -31,4 +31,16 @@ int compare_pairs(const void *a, const void *b);
 
 // From grain I to grain J, to its nearest image where the box repeats, m. Exactly
 // opposite from J to I, and right wherever the positions lie.
-struct vector nearest_image(const struct packing *packing, int i, int j);
+static inline struct vector nearest_image(const struct packing *packing, int i, int j)
+{
+    struct vector apart = subtract(packing->position[j], packing->position[i]);
+    for (int axis = 0; axis < 3; axis++) {
+        if (!packing->periodic[axis]) continue;
+        const double edge =
+            component(packing->upper, axis) - component(packing->lower, axis);
+        const double along = component(apart, axis);
+        if (fabs(along) >= edge / 2) // else round gives 0, and takes longer
+            set_component(&apart, axis, along - edge * round(along / edge));
+    }
+    return apart;
+}
