@@ -4,9 +4,8 @@
 // and what then cracks follows the crystals; a cut leaves a rough floor and top.
 //
 //     stays:  lower <= z <= upper  of the centre, each end only where it is given,
-//     box:    from the lowest to the highest surface of grains that stay; an end that
-//     is
-//             not cut keeps its wall, if it has one.
+//     box:    from the lowest to the highest surface of grains that stay; a wall
+//             stays where nothing is cut.
 // Grains are compacted in place, in their order. Bonds are dropped, since their grains
 // have other numbers then; they are made anew from contacts (main.c).
 #include "pack.h"
