@@ -12,6 +12,7 @@
 #include "foresee.h"
 #include "parameters/estimate.h"
 #include "run.h"
+#include "unused.h"
 #include "write_motion.h"
 
 #include <math.h>
@@ -253,6 +254,7 @@ int main(int argc, char **argv)
     struct simulate_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     check_parameters(&parameters);
+    check_unused(&parameters, invocation.parameters, invocation.n_input > 1);
     struct artifact *input = artifact_open(invocation.inputs[0], "packing");
     struct packing packing = read_packing(input);
     json_t *inputs = one_input(input);

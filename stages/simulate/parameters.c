@@ -5,8 +5,8 @@
 //
 // A number that may be left out has the default null and becomes NAN. So "not given"
 // differs from every value, and each reader decides what stands in for it. Checks that
-// need more than one number are check_parameters' below; those that need the packing
-// are in scene.c and groups.c.
+// need more than one number are check_parameters' below; what a scene leaves without
+// use is in unused.c; checks that need the packing are in scene.c and groups.c.
 #include "parameters.h"
 
 #include "basics/status.h"
@@ -15,7 +15,7 @@
 #include <stddef.h>
 
 #define OF_MATERIAL(member) offsetof(struct material_parameters, member)
-static const struct parameter material_table[] = {
+const struct parameter simulate_materials[] = {
     {"density", PARAMETER_NUMBER, "kg m-3", "2500", OF_MATERIAL(density), ABOVE(0),
      .text = "of the grains"},
     {"friction", PARAMETER_NUMBER, "1", "0.5", OF_MATERIAL(friction), AT_LEAST(0),
@@ -51,7 +51,7 @@ static const struct parameter material_table[] = {
     {0}};
 
 #define OF_PAIR(member) offsetof(struct pair_parameters, member)
-static const struct parameter pair_table[] = {
+const struct parameter simulate_pairs[] = {
     {"first", PARAMETER_TEXT, "1", NULL, OF_PAIR(first), .text = "name of a material"},
     {"second", PARAMETER_TEXT, "1", NULL, OF_PAIR(second),
      .text = "name of a material, perhaps the same"},
@@ -81,7 +81,7 @@ static const struct parameter pair_table[] = {
     }
 
 #define OF_WALL(member) offsetof(struct wall_parameters, member)
-static const struct parameter wall_table[] = {
+const struct parameter simulate_walls[] = {
     {"shape", PARAMETER_CHOICE, "1", "\"plane\"", OF_WALL(shape),
      .choices = "plane|cylinder|sphere|ring|block",
      .text = "plane: grains stay on the side that normal points to; cylinder: endless, "
@@ -170,15 +170,15 @@ const struct parameter simulate_table[] = {
     {"contact_time", PARAMETER_NUMBER, "s", "null", AT(contact_time), ABOVE(0),
      .text = "law=timed: duration of an impact, must be given"},
     {"materials", PARAMETER_NAMED, "1", "{}", AT(materials),
-     ROWS_OF(material_table, struct material_parameters),
+     ROWS_OF(simulate_materials, struct material_parameters),
      .text = "by name: {\"glass\": {\"density\": 2500, ...}, ...}"},
     {"material", PARAMETER_TEXT, "1", "null", AT(material),
      .text = "of the grains; null: the only one"},
     {"pairs", PARAMETER_NAMED, "1", "{}", AT(pairs),
-     ROWS_OF(pair_table, struct pair_parameters),
+     ROWS_OF(simulate_pairs, struct pair_parameters),
      .text = "by any name: friction and restitution of two materials"},
     {"walls", PARAMETER_NAMED, "1", "{}", AT(walls),
-     ROWS_OF(wall_table, struct wall_parameters),
+     ROWS_OF(simulate_walls, struct wall_parameters),
      .text = "by name: {\"floor\": {\"point\": [0,0,0]}, ...}"},
     {"box.walls", PARAMETER_CHOICES, "1", "[]", AT(box_walls),
      .choices = "-x|+x|-y|+y|-z|+z",

@@ -106,6 +106,8 @@ struct simulate_parameters {
 };
 
 extern const struct parameter simulate_table[];
+// Of each row of "materials", "pairs" and "walls".
+extern const struct parameter simulate_materials[], simulate_pairs[], simulate_walls[];
 
 // Checks what no single row can say. Exits 65. What depends on two parameters at once:
 // lists of one length, times that rise, servos, the elastic constants that the law

@@ -57,7 +57,7 @@ for program in "dry", "invade":
     refused(f"{program} refuses a mean of radii that are not drawn", BAD_DATA,
             [program, "--set", "throat_radius.mean=2e-7", "network"],
             rf"{program}\.throat_radius\.mean: must be left out with "
-            r"throat_radius\.distribution=network, got 2e-07")
+            r"throat_radius\.distribution=network, got 2e-7")
 make("of-default-radii", "dry", "network", "--set", "throat_radius.mean=103e-9",
      "--set", "throat_radius.seed=1.0")
 make("one-cell", "pack", "--set", "method=cubic", "--set", "counts=[1,1,3]",

@@ -5,7 +5,7 @@ import json
 import sys
 
 sys.path.insert(0, "tests")
-from refusals import BAD_DATA, UNSTABLE, done, refused, text_file
+from refusals import BAD_DATA, UNSTABLE, done, refused, result, run, text_file
 
 GLASS = {"density": 2500, "young_modulus": 1e7}
 
@@ -72,6 +72,40 @@ scene("a velocity of a group that nothing drives", {"groups": {"a": {"grains": [
       r"simulate\.groups\.a: velocity, spin and motion are for driven=true; .*")
 scene("a driven group with an initial velocity", {"groups": {"a": {"grains": [3], "driven": True, "initial": {"velocity": [0, 0, 1]}}}},
       r"simulate\.groups\.a\.initial: must be null or 0 with driven=true, .*")
+for title, section, message in [
+        ("a stiffness beside Hertz contacts", {"materials": {"glass": {**GLASS, "normal_stiffness": 100}}},
+         r"materials\.glass\.normal_stiffness: must be left out without law=linear, got 100\.0"),
+        ("a modulus of linear contacts", {"law": "linear", "materials": {"glass": {**GLASS, "normal_stiffness": 100}}},
+         r"materials\.glass\.young_modulus: must be left out without law=hertz, got 1e7"),
+        ("a time of contacts that have none", {"contact_time": 1e-6},
+         r"contact_time: must be left out without law=timed, got 1e-6"),
+        ("a pair that rebounds by damping ratios",
+         {"law": "linear", "materials": {"glass": {"normal_stiffness": 100}},
+          "pairs": {"both": {"first": "glass", "second": "glass", "restitution": 0.5}}},
+         r"pairs\.both\.restitution: must be left out with law=linear: .*, got 0\.5"),
+        ("a row of forces without forces", {"forces": {"row": 3}},
+         r"forces\.row: must be left out without a second input, of forces, got 3"),
+        ("a strength of no bonds", {"bond": {"normal_strength": 1e5}},
+         r"bond\.normal_strength: must be left out with bond\.kind=none, got 100000\.0"),
+        ("a force on bonds that break by stress", {"bond": {"kind": "parallel", "contact_strength": 1}},
+         r"bond\.contact_strength: must be left out with bond\.kind=parallel, got 1\.0"),
+        ("a friction of no walls", {"box": {"friction": 0.1}},
+         r"box\.friction: must be left out without box\.walls, got 0\.1"),
+        ("a round plane", {"walls": {"floor": {"point": [0, 0, 0], "radius": 1}}},
+         r"walls\.floor\.radius: must be left out with shape=plane or block, got 1\.0"),
+        ("grains outside of a plane", {"walls": {"floor": {"point": [0, 0, 0], "outside": True}}},
+         r"walls\.floor\.outside: must be left out with shape=plane or block, got true"),
+        ("a speed of a wall without a servo", {"walls": {"floor": {"point": [0, 0, 0], "servo": {"largest_speed": 1}}}},
+         r"walls\.floor\.servo\.largest_speed: must be left out without servo\.force or servo\.pressure, got 1\.0"),
+        ("a block that is turned", {"walls": {"step": {"shape": "block", "half_edge": [1, 1, 1], "point": [0, 0, -2],
+                                                       "normal": [0, 1, 1]}}},
+         r"walls\.step\.normal: must be left out with shape=sphere or block, got \[0,1,1\]")]:
+    scene(title, section, r"simulate\." + message)
+unused = run(["simulate", "-q", "packing", "-o", "motion", *(word for setting in [
+    "duration=1e-9", 'materials={"glass":{"young_modulus":1e7}}', "bond.normal_strength=16000", "forces.factor=1.0",
+    'walls={"ball":{"shape":"sphere","radius":1,"point":[0,0,-2],"normal":[0,0,1.0],"outside":true}}',
+] for word in ("--set", setting))])
+result("what nothing uses may say its default", unused.stderr.decode().splitlines())
 scene("a ring without a ring", {"box": {"walls": ["-z"]},
                                 "walls": {"ring": {"shape": "ring", "point": [0, 0, 0], "radius": 1, "inner_radius": 2}}},
       r"packing: simulate\.walls\.ring: needs a radius > 0 and an inner one below it, got 1 and 2")

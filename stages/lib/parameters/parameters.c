@@ -520,6 +520,59 @@ json_t *parameters_fill(const struct parameter *table, const json_t *section,
     return effective;
 }
 
+// ---- what nothing uses --------------------------------------------------------------
+
+// Whether KEY, or a group that it is in, is one of "a|b|c".
+static bool is_among(const char *keys, const char *key)
+{
+    char part[128];
+    for (const char *end = key;; end++) {
+        end = strchrnul(end, '.');
+        snprintf(part, sizeof part, "%.*s", (int)(end - key), key);
+        if (choice_index(keys, part) >= 0) return true;
+        if (!*end) return false;
+    }
+}
+
+// As json_equal, but 1 is 1.0, also within arrays.
+static bool is_same(const json_t *a, const json_t *b)
+{
+    const double difference = json_number_value(a) - json_number_value(b);
+    if (json_is_number(a) && json_is_number(b)) return !(fabs(difference) > 0);
+    if (!json_is_array(a) || json_array_size(a) != json_array_size(b))
+        return json_equal(a, b);
+    for (size_t k = 0; k < json_array_size(a); k++)
+        if (!is_same(json_array_get(a, k), json_array_get(b, k))) return false;
+    return true;
+}
+
+static bool is_default(const struct parameter *parameter, const json_t *value)
+{
+    json_t *fallback = json_loads(parameter->fallback, JSON_DECODE_ANY, NULL);
+    const bool same = is_same(value, fallback);
+    json_decref(fallback);
+    return same;
+}
+
+enum status refuse_unused(const struct parameter *table, const json_t *effective,
+                          const struct unused_keys *rules, size_t count,
+                          struct reason *reason)
+{
+    for (size_t k = 0; k < count; k++)
+        for (const struct parameter *p = table; p->key && rules[k].unused; p++) {
+            const json_t *value = find(effective, p->key);
+            if (!is_among(rules[k].keys, p->key) || is_default(p, value)) continue;
+            char *got = as_written(value);
+            refuse(reason, STATUS_BAD_DATA, "%s: must be left out %s, got %s", p->key,
+                   rules[k].why, got);
+            free(got);
+            return STATUS_BAD_DATA;
+        }
+    return STATUS_OK;
+}
+
+// ---- --set --------------------------------------------------------------------------
+
 // What is not JSON is text: --set dry.liquid=viscous needs no quotes. But no text
 // begins as a list or an object.
 void parameters_set(json_t *section, const char *assignment)

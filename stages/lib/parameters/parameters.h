@@ -22,6 +22,8 @@
 // all of it happens before a stage begins to compute.
 #pragma once
 
+#include "basics/status.h"
+
 #include <jansson.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -114,6 +116,24 @@ void parameters_set(json_t *section, const char *assignment);
 // Gives SECTION what it lacks at KEY from OTHER, where that is under the last part of
 // KEY; null there says nothing.
 void parameters_give(json_t *section, const char *key, const json_t *other);
+
+// Keys that nothing uses: KEYS is "radius|servo", where "servo" stands for all of
+// "servo.force", "servo.area", ...; WHY follows on "must be left out".
+struct unused_keys {
+    bool unused;
+    const char *keys;
+    const char *why; // "without a second input"
+};
+
+// STATUS_BAD_DATA where a key that RULES (COUNT) call unused has another value in
+// EFFECTIVE, of parameters_fill, than its default: whoever set it took it to count. The
+// reason begins with the key.
+//
+// For choices, inputs, and what is null if left out. A number of 0 that leaves others
+// without use is the end of a series, along which nothing else should have to change.
+enum status refuse_unused(const struct parameter *table, const json_t *effective,
+                          const struct unused_keys *rules, size_t count,
+                          struct reason *reason);
 
 // Whether null is a value that can be given.
 bool parameter_may_be_null(const struct parameter *parameter);
