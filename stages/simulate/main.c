@@ -247,8 +247,19 @@ static void estimate(const struct simulate_parameters *parameters, struct scene 
                    &(struct body_size){.grains = scene->setup.packing->n_particle});
 }
 
-// Without bond.kind the bonds of the packing are dropped here, so that nothing behind
-// this line sees them.
+// Bonds that bond.kind does not make are no longer the packing's: nothing after this
+// sees them. Who wants the grains for the stages after this may count on them.
+static void drop_bonds(const struct simulate_parameters *parameters,
+                       const struct invocation *invocation, struct packing *packing)
+{
+    const bool tells = !invocation->quiet && !invocation->estimates;
+    if (tells && parameters->write == WRITE_PACKING && packing->n_bond > 0)
+        report("%s: none of its %d bonds are in the packing written (bond.kind=none); "
+               "dem-replay.bond.by=touching bonds grains that touch then",
+               input_name(invocation->inputs[0]), packing->n_bond);
+    packing->n_bond = 0;
+}
+
 int main(int argc, char **argv)
 {
     struct simulate_parameters parameters;
@@ -259,7 +270,8 @@ int main(int argc, char **argv)
     struct packing packing = read_packing(input);
     json_t *inputs = one_input(input);
     struct vector *force = read_forces(&invocation, &parameters, &packing, inputs);
-    if (parameters.bond_kind == BOND_NONE) packing.n_bond = 0;
+    if (parameters.bond_kind == BOND_NONE)
+        drop_bonds(&parameters, &invocation, &packing);
     struct scene scene;
     read_scene(&parameters, &packing, input, &scene);
     if (invocation.estimates)

@@ -292,4 +292,12 @@ out = subprocess.run([os.path.join(BIN, "simulate"), "-p", at("still.json"), "--
 ok(out.returncode == 0 and not out.stderr, "nothing is said of a grain that stays in its box", out)
 out = subprocess.run([*out.args, "--set", "duration=0.1"], stderr=subprocess.PIPE)
 ok(b"1 of 1 grains, grain 0 the first, end outside" in out.stderr, "a grain that ends outside of it is reported", out)
+
+# Two grains that touch, and a bond between them.
+pair = packing([[0, 0, 0, 1e-3], [2e-3, 0, 0, 1e-3]], (-2e-3,) * 3, (4e-3, 2e-3, 2e-3), bonds="touching")
+for kind, bonds, said in ("none", 0, b"none of its 1 bonds are in the packing written"), ("parallel", 1, b""):
+    out = subprocess.run([*out.args[:3], "--set", f"bond.kind={kind}", pair, "-o", at("out")], stderr=subprocess.PIPE)
+    with h5py.File(at("out")) as file:
+        ok(len(file["bonds/particles"]) == bonds and (said in out.stderr if said else not out.stderr),
+           f"bond.kind={kind} writes {bonds} of 1 bonds and says so", out)
 done()
