@@ -136,8 +136,10 @@ struct response {
     int n_snapshot;
     struct snapshot *snapshot;
     double time_step, time_step_limit; // s; 0 when quasi-static
-    int n_detached, first_detached; // grains that left an equilibrium, or were unloaded
-    int n_unsettled;                // steps that are not settled
+    // Grains that nothing held, so that they left an equilibrium or were unloaded: of
+    // those that had a bond, how many, and the first; of the others.
+    int n_detached, first_detached, n_unbonded;
+    int n_unsettled; // steps that are not settled
     int n_unconverged,
         unconverged_grain; // loads under which something held did not come to rest,
                            // and the grain furthest from it under the last

@@ -13,6 +13,7 @@
 
 #include "basics/memory.h"
 #include "dem/keep.h"
+#include "detached.h"
 #include "drainage_checkpoint.h"
 #include "support_reaction.h"
 
@@ -325,8 +326,7 @@ static void end(struct run *run)
     if (state->dem) note_time_step(run);
     if (state->dem && unloads(run))
         find_loose(&state->loose, run->packing, run->settings->held, state->dem);
-    run->response->n_detached = state->loose.n_loose;
-    run->response->first_detached = state->loose.first_one;
+    count_detached(run, state->loose.is_loose, state->loose.first_one);
     loose_free(&state->loose);
     drainage_free(&state->drainage);
     dem_free(state->dem);

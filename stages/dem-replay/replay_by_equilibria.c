@@ -8,6 +8,7 @@
 #include "replay_engine.h"
 
 #include "basics/memory.h"
+#include "detached.h"
 #include "quasi_static/quasi_static.h"
 #include "support_reaction.h"
 
@@ -209,8 +210,9 @@ static void end(struct run *run)
     struct equilibria *state = run->state;
     struct response *response = run->response;
     if (state->last) {
-        response->n_detached =
-            quasi_static_detached(state->last, &response->first_detached);
+        int first;
+        quasi_static_detached(state->last, &first);
+        count_detached(run, quasi_static_is_detached(state->last), first);
         response->n_unconverged =
             quasi_static_unconverged(state->last, &response->unconverged_grain) -
             state->restless_before;

@@ -71,6 +71,9 @@ static void warn_if_loose(const struct packing *packing,
                response->n_detached, n, response->first_detached,
                response->n_detached > 1 ? "them" : "it",
                response->n_detached > 1 ? "their" : "its");
+    if (response->n_unbonded > 0)
+        report("%d of %d grains have no bond, and nothing held them under their load",
+               response->n_unbonded, n);
     if (response->n_instability > 0)
         report("the aggregate snapped through or buckled %d time%s, and dashpots "
                "brought it to rest; grain %d moved most the last time",
@@ -84,7 +87,8 @@ static void warn_if_loose(const struct packing *packing,
                                    : "the aggregate has given way: ",
                far.count, n, far.furthest, far.moved, response->n_crack,
                packing->n_bond);
-    const bool is_loose = most_are_far || response->n_detached == n;
+    const bool is_loose =
+        most_are_far || response->n_detached + response->n_unbonded == n;
     if (settings->support == SUPPORT_WALL && n > 0 && is_loose)
         report("support=wall holds only a body that the forces press against the wall; "
                "one that they only press together turns over (support=free removes net "

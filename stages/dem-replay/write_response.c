@@ -335,6 +335,7 @@ void put_response(struct artifact *artifact, const struct packing *packing,
     artifact_put_number(artifact, "/summary/time_step_limit",
                         response->time_step_limit);
     artifact_put_number(artifact, "/summary/gone", response->n_detached);
+    artifact_put_number(artifact, "/summary/gone_unbonded", response->n_unbonded);
     artifact_put_number(artifact, "/summary/snaps", response->n_instability);
     artifact_put_number(artifact, "/summary/largest_unbalanced_ratio",
                         largest_unbalanced_ratio(response, load->n_time));

@@ -60,7 +60,7 @@ def floating(scene):
     must((moved[:2] == 0).all(), "the pair moved")
     scene.stage("dem-replay", "-q", *QUASI_STATIC)
     moved = scene.get("dem-replay", "snapshots/displacement")[-1]
-    gone = scene.summary("dem-replay", "gone")
+    gone = scene.summary("dem-replay", "gone_unbonded")
     must(gone == 1 and (moved[:2] == 0).all(), f"equilibria: {gone:g} left, or the pair moved")
     return f"flight as the closed form to {error:.1e}, the pair at rest; it leaves equilibria"
 

@@ -3,13 +3,14 @@
 # Three grains in a column, the lowest held: what a fragment that came loose still bears, how the
 # moment in a bond counts in its strength, and which engine engine=auto takes. Closed forms.
 import math
+import subprocess
 import sys
 
 import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch_paths, sets
+from tap import BIN, SCENE, done, ok, run, scratch_paths, sets
 
 RADIUS = 250e-9
 NECK = 0.5858 * RADIUS
@@ -73,6 +74,22 @@ with scratch_paths() as at:
        "it stays where it came loose, however long a step lasts", away)
     ok(away["keep", 4000] > 2 * away["keep", 2000] > 10 * away["unload", 4000],
        "with loose_grains=keep it flies", away)
+
+    # ---- who detached: the middle grain, whose bond breaks; the upper one never had any
+    with h5py.File(at("pull"), "a") as forces:
+        lower = forces["bonds/particles"][:1]
+        del forces["bonds/particles"]
+        forces["bonds/particles"] = lower
+        forces["bonds/particles"].attrs["units"] = "1"
+    for engine in "explicit", "quasi-static":
+        said = subprocess.run([f"{BIN}/dem-replay", "-p", SCENE, *sets(*COMMON, *breaks, f"engine={engine}",
+                               "bond.normal_strength=1", "loose_grains=unload"), at("pull"), "-o", at("response")],
+                              stderr=subprocess.PIPE, text=True).stderr
+        with h5py.File(at("response")) as response:
+            gone = [int(response["summary"].attrs[key]) for key in ("gone", "gone_unbonded")]
+        ok(gone == [1, 1] and "1 of 3 grains detached from the aggregate, grain 1 first" in said and
+           "1 of 3 grains have no bond, and nothing held them" in said,
+           f"{engine}: one grain detached, and one more was never bonded", (gone, said))
 
     # ---- the moment in a bond [K 4.41]: stress beta |M| R / I, with M = r F of a pull F across
     # the upper bond, whose grain may turn, and I = pi R^4 / 4. The lower bond has three times
