@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 from scipy.spatial import cKDTree
 
-from common import BIN, artifact, refuse, summary
+from common import BIN, artifact, copy_groups, refuse, summary
 from samples import described
 
 LAYER = 3  # thickness of the end layers, mean radii
@@ -126,9 +126,7 @@ class Specimen:
             share = np.where(end, self.r**2, 0)
             force[:, :, axis] += sign * self.section(axis) * np.outer(stresses, share / share.sum())
         with h5py.File(self.packing) as packing, h5py.File(path, "w") as file:
-            for name in packing:
-                if name != "VTKHDF":
-                    packing.copy(name, file)
+            copy_groups(packing, file, without=["bonds"] if self.bonds else [])
             file.attrs["schema"] = "craquelure/forces/1"
             for name in list(file["summary"].attrs):
                 del file["summary"].attrs[name]
@@ -138,7 +136,6 @@ class Specimen:
             file["saturation"] = np.linspace(1, 0, len(stresses))
             file["force"] = force
             if self.bonds:
-                del file["bonds"]
                 file["bonds/particles"], file["bonds/relative_strength"] = self.gripped(axis)
 
     def pull(self, axis, stresses, bond, how):

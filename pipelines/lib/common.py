@@ -53,6 +53,14 @@ def artifact(path, kind=None):
     return file
 
 
+def copy_groups(source, target, without=()):
+    """All of the artifact SOURCE but its attributes and the groups WITHOUT, into the file TARGET; not /VTKHDF
+    either, whose links would bring the old arrays along."""
+    for name in source:
+        if name not in ("VTKHDF", *without):
+            source.copy(name, target)
+
+
 def parameters(file):
     """Of the stage that made FILE."""
     return json.loads(file.attrs["parameters"])

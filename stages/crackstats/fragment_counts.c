@@ -12,15 +12,13 @@
 
 #include <stdlib.h>
 
-// Grains of each fragment, at its lowest grain; 0 at the others. ROOT: (n_particle).
-static int *fragment_sizes(const struct packing *packing, const uint8_t *intact,
-                           int *root)
+int *fragment_sizes(const struct packing *packing, const uint8_t *joins, int *root)
 {
     int *size = NEW_ARRAY(int, packing->n_particle);
     for (int i = 0; i < packing->n_particle; i++)
         root[i] = i;
     for (int b = 0; b < packing->n_bond; b++)
-        if (intact[b]) unite_sets(root, packing->bond[b][0], packing->bond[b][1]);
+        if (joins[b]) unite_sets(root, packing->bond[b][0], packing->bond[b][1]);
     for (int i = 0; i < packing->n_particle; i++) {
         root[i] = set_root(root, i);
         if (!is_auxiliary(packing, i)) size[root[i]]++;

@@ -12,6 +12,11 @@ struct fragment_counts {
     int single;  // grains that no bond holds
 };
 
+// Grains of each set that the bonds with JOINS (n_bond) join, (n_particle) at its
+// lowest grain, 0 at the others; the caller frees it. ROOT (n_particle) becomes the
+// lowest grain of each grain's set.
+int *fragment_sizes(const struct packing *packing, const uint8_t *joins, int *root);
+
 // 1 for each grain (n_particle) of the largest fragment if the bonds with INTACT
 // (n_bond) hold; among equals the one with the lowest grain. The caller frees it.
 uint8_t *largest_fragment(const struct packing *packing, const uint8_t *intact);

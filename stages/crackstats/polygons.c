@@ -13,6 +13,7 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "basics/sorted.h"
+#include "fragment_counts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -251,25 +252,23 @@ static bool *find_core(const struct run *run, const uint8_t *intact)
     return core;
 }
 
+// Joined are only grains of cores, so a set of others has one grain and is left out.
 int count_islands(const struct columns *columns, const struct run *run,
                   const uint8_t *intact)
 {
-    const int n = run->packing.n_particle;
+    const struct packing *packing = &run->packing;
     bool *core = find_core(run, intact);
-    int *root = NEW_ARRAY(int, n), *size = NEW_ARRAY(int, n), count = 0;
-    for (int i = 0; i < n; i++)
-        root[i] = i;
-    for (int b = 0; b < run->packing.n_bond; b++) {
-        const int32_t *end = run->packing.bond[b];
-        if (intact[b] && is_lateral(run, b) && core[end[0]] && core[end[1]])
-            unite_sets(root, end[0], end[1]);
-    }
-    for (int i = 0; i < n; i++)
-        if (core[i]) size[set_root(root, i)]++;
+    int *root = NEW_ARRAY(int, packing->n_particle), count = 0;
+    uint8_t *joins = NEW_ARRAY(uint8_t, packing->n_bond);
+    for (int b = 0; b < packing->n_bond; b++)
+        joins[b] = intact[b] && is_lateral(run, b) && core[packing->bond[b][0]] &&
+                   core[packing->bond[b][1]];
+    int *size = fragment_sizes(packing, joins, root);
     const double least = pow(columns->height / columns->diameter, 3) / 2;
-    for (int i = 0; i < n; i++)
-        count += size[i] >= least;
+    for (int i = 0; i < packing->n_particle; i++)
+        count += core[i] && size[i] >= least;
     free(core);
+    free(joins);
     free(root);
     free(size);
     return count;
