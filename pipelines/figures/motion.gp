@@ -11,13 +11,13 @@ tall = room * 1100. * high / wide
 tall = tall > 520 ? 520. : tall
 below = 300.
 page = lines_of_frames * (tall + 34.) + below
-set terminal @svg "Helvetica,14" size 1100,page
+set terminal pngcairo background "#ffffff" font "Helvetica,11" size 1100,page
 set multiplot
 @axes
 unset key
 set palette defined (0 "#c9d6ea", 0.35 "#7fa4cf", 0.7 "#0a4a96", 1 "#1a1440")
 set cbrange [0:fastest]
-set cbtics fastest / 4
+set cbtics fastest / (tall < 120 ? 1 : 4)
 set format cb "%.2g"
 set size ratio -1
 unset xtics; unset ytics; unset grid
@@ -52,12 +52,14 @@ set key at graph 1, graph 1.14 right horizontal samplen 1.5
 set format y "%.3g"
 set lmargin at screen 0.09
 set rmargin at screen 0.47
-set ylabel "energy / J" offset 1,0
+set ylabel "energy / J"
 plot tables . "/history" using 1:2 with lines linewidth 2 linecolor rgb blue title "kinetic", \
     "" using 1:3 with lines linewidth 2 linecolor rgb red title "elastic"
 set lmargin at screen 0.60
 set rmargin at screen 0.98
-set ylabel "largest force / N" offset 1,0
-plot tables . "/history" using 1:(walls ? $4 : NaN) with lines linewidth 2 linecolor rgb blue title (walls ? "on a wall" : ""), \
-    "" using 1:(driven ? $5 : NaN) with lines linewidth 2 linecolor rgb red title (driven ? "on a driven group" : "")
+set ylabel "largest force / N"
+if (walls || driven) {
+    plot tables . "/history" using 1:(walls ? $4 : NaN) with lines linewidth 2 linecolor rgb blue title (walls ? "on a wall" : ""), \
+        "" using 1:(driven ? $5 : NaN) with lines linewidth 2 linecolor rgb red title (driven ? "on a driven group" : "")
+}
 unset multiplot
