@@ -4,7 +4,10 @@
 // Pressures stay in Pa: the flow is linear, so a viscosity of 1 in the solution and mu
 // in the fluxes give the same pressures. NAN means that a wall has no such condition: a
 // wall with neither lets nothing through. A wall takes one condition, and an axis along
-// which the box repeats none, as it has no walls.
+// which the box repeats none, as it has no walls. Where the pressure falls along a
+// wall, from box to box, the wall is open to fluid whose pressure falls alike, and a
+// pressure imposed is that in the middle of the box; pressures of the computation count
+// the gradient from its lower corner (p = value + gradient . x).
 #include "conditions.h"
 
 static const char *const wall_names[WALL_COUNT] = {"x_lower", "x_upper", "y_lower",
@@ -38,6 +41,7 @@ enum status find_conditions(const struct grains *grains, const struct imposed *i
     *conditions = imposed->along == ALONG_NONE
                       ? nothing()
                       : fall_along(grains, imposed->along, imposed->drop);
+    const double middle = 0.5 * dot(conditions->gradient, grains->box);
     for (int wall = 0; wall < WALL_COUNT; wall++) {
         const bool pressure = !isnan(imposed->pressure[wall]);
         const bool flux = !isnan(imposed->flux[wall]);
@@ -52,7 +56,7 @@ enum status find_conditions(const struct grains *grains, const struct imposed *i
                           "flow.%s.%s: must be null, for %s imposes something there",
                           key, wall_names[wall],
                           wall / 2 == imposed->along ? "flow.along" : "flow.flux");
-        if (pressure) conditions->pressure[wall] = imposed->pressure[wall];
+        if (pressure) conditions->pressure[wall] = imposed->pressure[wall] - middle;
         if (flux)
             conditions->flux[wall] = imposed->flux[wall] * viscosity /
                                      (grains->unit * grains->unit * grains->unit);

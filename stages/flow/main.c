@@ -57,7 +57,9 @@ static const struct parameter table[] = {
              "drive the flow"},
     {"pressure_drop", PARAMETER_NUMBER, "Pa", "1", AT(imposed.drop),
      .text = "pressure drop over the box"},
-    WALL("pressure.x_lower", pressure, "Pa", 0, "piezometric pressure at the wall -x"),
+    WALL("pressure.x_lower", pressure, "Pa", 0,
+         "piezometric pressure at the wall -x; in its middle, where along lets the "
+         "pressure fall along the wall, from box to box"),
     WALL("pressure.x_upper", pressure, "Pa", 1, "at the wall +x"),
     WALL("pressure.y_lower", pressure, "Pa", 2, "at the wall -y"),
     WALL("pressure.y_upper", pressure, "Pa", 3, "at the wall +y"),

@@ -250,6 +250,16 @@ with scratch_paths() as at:
         ok(np.abs(pressed[0]).max() > 1e-4 and np.ptp(pressed, axis=0).max() < 1e-9 * np.abs(pressed[0]).max(),
            "  those on the walls are the same of other numbers and from another corner", np.ptp(pressed, axis=0).max())
 
+        # Walls open to fluid whose pressure falls alike: each has the pressure given, by its area 1, and
+        # what they add to the flow is that of the walls alone, as the balances are linear.
+        parts = [flow(at("between"), along=along, pressure_drop=drop, **{"pressure.y_lower": "null", "pressure.y_upper": "null",
+                      "pressure.z_lower": low, "pressure.z_upper": high})
+                 for along, drop, low, high in (("x", 1, 2, 3), ("x", 1, 0, 0), ("none", 1, 2, 3))]
+        press = [part["walls/pressure_force"][4:, 2] for part in parts]
+        ok(np.abs(press[0] - [-2, 3]).max() < 1e-12 and np.abs(press[1]).max() < 1e-12, "  open walls have the pressures given", press)
+        inflow = [part["walls/inflow"][:] for part in parts]
+        ok(np.abs(inflow[0] - inflow[1] - inflow[2]).max() < 1e-12 * np.abs(inflow[2]).max(), "  and their flows add up", inflow)
+
     # Archimedes: grains weigh less by the fluid that they take the place of, and the piezometric
     # pressure knows nothing of it.
     wet = flow(path, density=1000, gravity="[1,0,-9.81]")
