@@ -58,10 +58,13 @@ int events_of_pieces(const struct network *network, const struct outcome *outcom
                      int throat, int32_t event[2])
 {
     const int32_t *ends = network->throat_nodes[throat];
+    const bool by_pores = outcome->held_by == HELD_BY_PORES;
+    // Throats that take no part never had liquid, though their nodes may have it.
+    const bool by_nodes = by_pores && network->throat_kind[throat] == THROAT_NETWORK;
     for (int end = 0; end < 2; end++)
-        event[end] = outcome->held_by == HELD_BY_PORES ? outcome->node_event[ends[end]]
-                                                       : outcome->throat_event[throat];
-    return outcome->held_by == HELD_BY_PORES ? 2 : 1;
+        event[end] =
+            by_nodes ? outcome->node_event[ends[end]] : outcome->throat_event[throat];
+    return by_pores ? 2 : 1;
 }
 
 static void find_saturations(const struct network *network, struct outcome *outcome)

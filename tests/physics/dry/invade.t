@@ -184,6 +184,17 @@ with scratch_paths() as at:
     ok(all(np.array_equal(*pair) for pair in zip(*drawn)) and drawn[0][1].max() == 2,
        "drawn radii, and throats imposed empty, are those of dry")
 
+    # Throats imposed empty hold no liquid, whatever holds it in the others.
+    for liquid_in in "throats", "pores":
+        run("invade", *sets(f"liquid_in={liquid_in}", 'imposed_empty=["-x"]'), at("network.h5"), "-o", at("imposed.h5"))
+        with h5py.File(at("imposed.h5")) as file:
+            open_ = file["throats/kind"][:] == 0
+            held = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
+            left = file["summary"].attrs["residual_saturation"] * held[open_].sum()
+            ok((file["throats/cluster"][:][~open_] == -1).all() and left > 0
+               and abs(file["clusters/volume"][:].sum() / left - 1) < 1e-12,
+               f"clusters in {liquid_in} hold what is left, and no throat imposed empty is in one")
+
     network = read(at("network.h5"))
     ok(run("invade", input=network) == run("invade", "--threads", "2", at("network.h5")),
        "the same bytes through a pipe and by two threads")
