@@ -6,8 +6,9 @@
 // A drying is replayed from step to step; a frame is written at the first step at or
 // below each of n evenly spaced saturations, so fast changes take fewer frames than n.
 // Of forces, rows frame (n_time - 1) / (n_frame - 1) are taken. In a response positions
-// are those before drying plus displacements, and a contact is whole until the time of
-// its crack has come.
+// are those before drying plus displacements, radii those of grains that have shrunk so
+// far, and a contact is whole until the time of its crack has come. A contact across a
+// side that repeats is a line from a grain to itself, as a throat there is.
 //
 //     kind      points              lines              arrays
 //     drying    nodes               throats            saturation, radius, kind
@@ -204,6 +205,31 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
                     cracks->mode_before[k]);
 }
 
+// The contacts as lines between grains that lie at MOVED, which this packing becomes:
+// across a side that repeats both ends are the first grain.
+static void draw_contacts(struct packing *packing, struct vector *moved,
+                          const struct crack_view *view, int32_t (*line)[2])
+{
+    struct vector *before = packing->position;
+    packing->position = moved;
+    for (int c = 0; c < view->n_contact; c++) {
+        const int32_t *pair = view->contact[c];
+        const struct vector apart = subtract(moved[pair[1]], moved[pair[0]]);
+        const struct vector nearest = nearest_image(packing, pair[0], pair[1]);
+        const bool across = norm(subtract(nearest, apart)) > 0;
+        line[c][0] = pair[0];
+        line[c][1] = pair[across ? 0 : 1];
+    }
+    packing->position = before;
+}
+
+// Radii of grains that have shrunk by STRAIN; NULL: not at all.
+static void shrink(const struct packing *packing, const double *strain, double *radius)
+{
+    for (int i = 0; i < packing->n_particle; i++)
+        radius[i] = packing->radius[i] * (strain ? 1 - strain[i] : 1);
+}
+
 // Displacements of the grains; forces, cracks and liquid bridges at the contacts.
 // Contacts are those of all snapshots, with forces of 0 where one is open.
 static void response_series(const struct artifact *artifact, struct frames *frames)
@@ -223,17 +249,24 @@ static void response_series(const struct artifact *artifact, struct frames *fram
     const bool wet = artifact_has_dataset(artifact, bridge_name[0]);
     for (int k = 0; wet && k < 3; k++)
         bridge[k] = artifact_get(artifact, bridge_name[k], NULL);
+    double *strain = NULL;
+    if (artifact_has_dataset(artifact, "/snapshots/shrinkage"))
+        strain = artifact_get(artifact, "/snapshots/shrinkage", NULL);
     struct crack_view view = crack_view_of(artifact);
     struct vector *moved = NEW_ARRAY(struct vector, n);
+    double *radius = NEW_ARRAY(double, n);
+    int32_t(*line)[2] = allocate((size_t)view.n_contact, sizeof *line);
     for (int s = 0; s < n_snapshot; s++) {
         const size_t at = (size_t)s * n;
         for (size_t i = 0; i < n; i++)
             moved[i] = add(packing.position[i], displacement[at + i]);
         update_cracks(&view, &packing, time[s]);
+        draw_contacts(&packing, moved, &view, line);
+        shrink(&packing, strain ? strain + at : NULL, radius);
         const struct vtu_array points[] = {
             {"displacement", &displacement[at].x, 3, NULL},
             {"force", &force[at].x, 3, NULL},
-            {"radius", packing.radius, 1, NULL},
+            {"radius", radius, 1, NULL},
             {0}};
         const size_t row = (size_t)s * (size_t)view.n_contact;
         const struct vtu_array cells[] = {
@@ -248,7 +281,7 @@ static void response_series(const struct artifact *artifact, struct frames *fram
                   &(struct vtu_grid){.n_point = packing.n_particle,
                                      .point = moved,
                                      .n_line = view.n_contact,
-                                     .line = (const int32_t(*)[2])view.contact,
+                                     .line = (const int32_t(*)[2])line,
                                      .points = points,
                                      .cells = cells,
                                      .shown = "crack"});
@@ -259,7 +292,10 @@ static void response_series(const struct artifact *artifact, struct frames *fram
     free(contact_force);
     for (int k = 0; k < 3; k++)
         free(bridge[k]);
+    free(strain);
     free(moved);
+    free(radius);
+    free(line);
     crack_view_free(&view);
     packing_free(&packing);
 }

@@ -8,9 +8,9 @@
 //     id x y z radius [displacement 3] [force 3] [broken_bonds]      n rows
 //
 // Which columns there are, Properties says: all frames of one file have the same.
-// Places are those before drying plus displacement, where that is known. Time is left
-// out where there is none. All frames are made in memory, so the file is whole or not
-// there.
+// Places are those before drying plus displacement, where that is known, and radii
+// those of grains that have shrunk so far. Time is left out where there is none. All
+// frames are made in memory, so the file is whole or not there.
 #include "xyz.h"
 
 #include "basics/file.h"
@@ -26,6 +26,7 @@ struct xyz_frame {
     double time; // s; NAN where there is none
     const struct vector *displacement, *force;
     const int *broken;
+    const double *shrinkage;
 };
 
 // Lattice is the box, row by row; pbc says where it repeats.
@@ -52,7 +53,9 @@ static void put_frame(FILE *stream, const struct packing *packing,
         const struct vector moved =
             frame->displacement ? frame->displacement[i] : (struct vector){0};
         const struct vector x = add(packing->position[i], moved);
-        fprintf(stream, "%d %.9g %.9g %.9g %.9g", i, x.x, x.y, x.z, packing->radius[i]);
+        const double radius =
+            packing->radius[i] * (frame->shrinkage ? 1 - frame->shrinkage[i] : 1);
+        fprintf(stream, "%d %.9g %.9g %.9g %.9g", i, x.x, x.y, x.z, radius);
         if (frame->displacement)
             fprintf(stream, " %.9g %.9g %.9g", moved.x, moved.y, moved.z);
         if (frame->force)
@@ -102,12 +105,16 @@ static void put_snapshots(FILE *stream, const struct artifact *artifact,
         artifact_get(artifact, "/snapshots/displacement", NULL);
     struct vector *force = artifact_get(artifact, "/snapshots/force", NULL);
     uint8_t *intact = artifact_get(artifact, "/snapshots/bond_intact", NULL);
+    double *shrinkage = NULL;
+    if (artifact_has_dataset(artifact, "/snapshots/shrinkage"))
+        shrinkage = artifact_get(artifact, "/snapshots/shrinkage", NULL);
     for (int64_t s = 0; s < n_snapshot; s++) {
         count_broken(packing, intact + s * packing->n_bond, broken);
-        put_frame(
-            stream, packing,
-            &(struct xyz_frame){time[s], displacement + s * n, force + s * n, broken});
+        put_frame(stream, packing,
+                  &(struct xyz_frame){time[s], displacement + s * n, force + s * n,
+                                      broken, shrinkage ? shrinkage + s * n : NULL});
     }
+    free(shrinkage);
     free(time);
     free(displacement);
     free(force);

@@ -88,6 +88,30 @@ with scratch_paths() as at:
     total = lambda grid: vtk_to_numpy(grid.GetCellData().GetArray("saturation")).sum()
     ok(total(full) == 560 and total(dry) == 0, "drying: from 560 full throats to none")
 
+    # A layer that shrinks, in a box that repeats.
+    run("pack", "-q", "--set=counts=[4,5,3]", "--set=periodic=[true,true,false]", "-o", at("layer.hdf"))
+    run("dem-replay", "-q", *[f"--set={entry}" for entry in (
+        "shrinkage.strain=0.05", "shrinkage.steps=4", "snapshots=[0.5,0]", "cycles=50", "most_cycles=50")],
+        at("layer.hdf"), "-o", at("shrunk.hdf"))
+    run("inspect", "--vtk", at("shrunk"), at("shrunk.hdf"))
+    run("inspect", "--xyz", at("shrunk.xyz"), at("shrunk.hdf"))
+    with h5py.File(at("shrunk.hdf")) as file:
+        pair, place = file["contacts/particles"][:], file["particles/position"][:]
+        inside = np.linalg.norm(np.diff(place[pair], axis=1), axis=2).ravel() < 1.01 * 2 * 250e-9
+        radii = file["particles/radius"][:] * (1 - file["snapshots/shrinkage"][:])
+        moved = place + file["snapshots/displacement"][:]
+    last = grid_of(vtkXMLUnstructuredGridReader(), at("shrunk-0001.vtu"))
+    ends = vtk_to_numpy(last.GetCells().GetConnectivityArray()).reshape(-1, 2)
+    ok(not inside.all() and np.array_equal(ends[inside], pair[inside]) and np.array_equal(ends[~inside], pair[~inside][:, [0, 0]])
+       and np.allclose(points(last), moved[-1], rtol=1e-8, atol=1e-15),
+       "response: contacts across a side that repeats are not drawn across the box", ends[~inside])
+    with open(at("shrunk.xyz"), encoding="utf-8") as file:
+        rows = [line.split() for line in file if len(line.split()) > 10 and not line.startswith("Lattice")]
+    written = np.array(rows, float)[:, 4].reshape(2, -1)
+    ok(radii[-1].min() < 0.96 * 250e-9
+       and np.allclose(vtk_to_numpy(last.GetPointData().GetArray("radius")), radii[-1], rtol=1e-8, atol=0)
+       and np.allclose(written, radii, rtol=1e-8, atol=0), "and grains have the radii to which they have shrunk", written)
+
     # Rings around contacts of irregular grains: with what is in throats they make the saturation.
     scene = ["method=radius_expansion", "count=60", "sizes.distribution=normal", "sizes.spread=0.2"]
     run("pack", "-q", *[f"--set={entry}" for entry in scene], "-o", at("grains.hdf"))
