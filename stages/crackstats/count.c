@@ -23,21 +23,26 @@ int class_of(double share, int n)
     return class_at((share - BORDER) * n, n);
 }
 
-struct slices slices_at(double share, int n)
+// The slice at SHARE of the height. Of a box that REPEATS along z the last lies below
+// the first: a bond or throat across that side has its middle on either side of it.
+static int slice_at(double share, int n, bool repeats)
 {
-    return (struct slices){{class_of(share, n), class_at((share + BORDER) * n, n)}};
+    return class_at((repeats ? share - floor(share) : share) * n, n);
 }
 
-double height_share(const struct packing *packing, double z)
+struct slices slices_at(const struct packing *packing, double z, int n)
 {
-    return (z - packing->lower.z) / (packing->upper.z - packing->lower.z);
+    const double share = (z - packing->lower.z) / (packing->upper.z - packing->lower.z);
+    const bool repeats = packing->periodic[2];
+    return (struct slices){
+        {slice_at(share - BORDER, n, repeats), slice_at(share + BORDER, n, repeats)}};
 }
 
 struct slices slices_of_bond(const struct packing *packing, int bond, int n)
 {
     const double z = packing->position[packing->bond[bond][0]].z +
                      0.5 * bond_vector(packing, bond).z;
-    return slices_at(height_share(packing, z), n);
+    return slices_at(packing, z, n);
 }
 
 struct counts counts_init(struct classes classes)

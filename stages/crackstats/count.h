@@ -29,16 +29,14 @@ struct counts {
 // is the lower: intervals include their upper ends.
 int class_of(double share, int n);
 
-// The two slices, among N, that count half each of what lies at SHARE of the height:
-// the same slice twice, except on the border of two, where bonds between two layers of
-// a lattice lie. So a body upside down has its profile upside down.
+// The two slices, among N of the box, that count half each of what lies at the height
+// Z, m: the same slice twice, except on the border of two, where bonds between two
+// layers of a lattice lie. So a body upside down has its profile upside down. What lies
+// beyond a side counts in the outermost slice, or in its image where the box repeats.
 struct slices {
     int slice[2];
 };
-struct slices slices_at(double share, int n);
-
-// Height in the box, 0 to 1.
-double height_share(const struct packing *packing, double z);
+struct slices slices_at(const struct packing *packing, double z, int n);
 
 // The slices, among N, in which a crack of BOND counts: by the initial height of the
 // bond, so that one between two layers stays on their border however the grains have

@@ -60,7 +60,7 @@ static struct slices *throat_slices(const struct network *network, int n_slice)
     for (int t = 0; t < network->n_throat; t++) {
         const double z = network->node_position[network->throat_nodes[t][0]].z +
                          0.5 * along_throat(network, t).z;
-        slice[t] = slices_at(height_share(&network->packing, z), n_slice);
+        slice[t] = slices_at(&network->packing, z, n_slice);
     }
     return slice;
 }

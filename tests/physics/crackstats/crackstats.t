@@ -94,6 +94,26 @@ with scratch_paths() as at:
     ok(stats["interval_of"] == "one run: no interval; repeat over seeds", "which is said",
        stats["interval_of"])
 
+    # ---- a box that repeats along z -------------------------------------------------
+    # Where it begins is of no consequence: the profile goes around with the grains.
+    run("pack", "-q", *sets("method=soft_spheres", "upper=[2e-6,2e-6,3e-6]", "periodic=[true,true,true]", "bonds=touching"),
+        "-o", at("around"))
+    run("dem-replay", "-q", *sets("shrinkage.strain=1e-6", "shrinkage.steps=1", "held.walls=[]", "held.grains=[0]", "cycles=1",
+                                  "most_cycles=1", "unsettled=count"), at("around"), "-o", at("turned"))
+    with h5py.File(at("turned"), "r+") as file:
+        pairs, z = file["bonds/particles"][:], file["particles/position"][:, 2]
+        low, high = file["domain/lower"][2], file["domain/upper"][2]
+        across = np.flatnonzero(np.abs(np.diff(z[pairs])[:, 0]) > (high - low) / 2)
+    by_hand(at("turned"), across, np.ones(len(across)), [0] * len(across), [0] * len(across))
+    profiles = []
+    for turn in range(5):
+        with h5py.File(at("turned"), "r+") as file:
+            file["particles/position"][:, 2] = low + (z - low + turn * (high - low) / 5) % (high - low)
+        profiles.append([s["total"] for s in crackstats("--set", "slices=5", at("turned"))["profile"]])
+    ok(len(across) > 10 and profiles[2][1] > 0 and profiles[2][2] > 0
+       and all(np.array_equal(np.roll(p, -k), profiles[0]) for k, p in enumerate(profiles)),
+       "slices: the same wherever a box that repeats along z begins", profiles)
+
     # ---- loads that did not come to rest --------------------------------------------
     def unsettled(settled, cracks):
         """Loads and cracks under them, by crackstats, of a response with CRACKS under each load."""
