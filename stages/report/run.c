@@ -244,6 +244,19 @@ struct run run_of_paths(const char *const *paths, int n)
     return run;
 }
 
+bool counts_steps(const struct run *run)
+{
+    if (!run->of[RESPONSE] || run->of[DRYING]) return false;
+    char *text = artifact_get_text(run->of[RESPONSE], "inputs");
+    json_t *inputs = text ? json_loads(text, 0, NULL) : NULL;
+    const char *schema =
+        json_string_value(json_object_get(json_array_get(inputs, 0), "schema"));
+    const bool counts = schema && !strncmp(schema, "craquelure/packing/", 19);
+    json_decref(inputs);
+    free(text);
+    return counts;
+}
+
 static void close_kept(struct artifact *artifact)
 {
     if (!artifact) return;

@@ -44,3 +44,7 @@ struct run {
 // where two are of one kind, or a flow or motion is not alone.
 struct run run_of_paths(const char *const *paths, int n);
 void close_run(struct run *run);
+
+// Whether times are numbers of steps, not seconds: a packing that shrinks or drains by
+// itself has no times, and dem-replay counts its steps.
+bool counts_steps(const struct run *run);

@@ -13,7 +13,9 @@
 //
 //     0     bonds                    of the packing
 //     1-6   cracks of the response   all, by mode, %; saturation at first and half
-//     7, 8  the course (course.h)    saturation at half the first rate; s until its end
+//     7, 8  the course (course.h)    saturation at half the first rate; s until its
+//     end,
+//                                    where times are no steps
 //     9-11  crackstats of the run    fragments: count, largest; shrinkage, %
 //
 // A number that a run does not have is NAN: it is left out of means, and a column that
@@ -110,7 +112,7 @@ static void read_values(double value[COLUMNS], const struct run *run)
     const struct course course = course_of(run, 20000);
     const int half = row_of_half_rate(&course);
     if (half >= 0) value[7] = course.saturation[half];
-    if (course.n_row) value[8] = course.time[course.n_row - 1];
+    if (course.n_row && !counts_steps(run)) value[8] = course.time[course.n_row - 1];
     value[9] = counted_mean(run, "fragments", "count");
     value[10] = counted_mean(run, "fragments", "largest");
     value[11] = 100 * counted_mean(run, "shrinkage", "largest");

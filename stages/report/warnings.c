@@ -77,24 +77,10 @@ static void warn_of_rest(FILE *page, const struct run *run)
     if (snaps > 0) warn(page, "The body snapped through or buckled %.0f times.", snaps);
 }
 
-// A packing that shrinks or drains by itself has no times: dem-replay counts its steps.
-static bool counts_steps(const struct artifact *response)
-{
-    char *text = artifact_get_text(response, "inputs");
-    json_t *inputs = text ? json_loads(text, 0, NULL) : NULL;
-    const char *schema =
-        json_string_value(json_object_get(json_array_get(inputs, 0), "schema"));
-    const bool counts = schema && !strncmp(schema, "craquelure/packing/", 19);
-    json_decref(inputs);
-    free(text);
-    return counts;
-}
-
 // Without a drying the throats of a network are drawn full to the end.
 static void warn_of_course(FILE *page, const struct run *run)
 {
-    const struct artifact *response = run->of[RESPONSE];
-    if (!response || run->of[DRYING] || !counts_steps(response)) return;
+    if (!counts_steps(run)) return;
     warn(page, "No drying gives times here: a second stands for a step of the load.");
     if (run->network.n_throat)
         warn(page,

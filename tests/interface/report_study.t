@@ -145,6 +145,18 @@ ok(ended == 66 and "holds no artifact" in error, "a folder without a run is refu
 ended, error = refused(paths[0], at("study/packing.h5"))
 ok(ended == 64 and "second packing" in error, "folders and files together are one run", (ended, error))
 
+# ---- runs without times -------------------------------------------------------------------
+
+run("pack", "-q", "--set=counts=[3,3,3]", "-o", at("layer.h5"))
+for strain in "0.01", "0.02":
+    os.makedirs(at(f"layers/{strain}"))
+    run("dem-replay", "-q", f"--set=shrinkage.strain={strain}", "--set=shrinkage.steps=5", "--set=cycles=1", "--set=most_cycles=1",
+        at("layer.h5"), "-o", at(f"layers/{strain}/response.h5"))
+run("report", at("layers/0.01"), at("layers/0.02"), "-o", at("layers.html"))
+layers = Table(re.search(r'<table id="runs">.*?</table>', open(at("layers.html")).read(), re.S)[0]).rows
+ok("bonds" in layers[0] and "dried after, s" in head and not any("dried after" in cell for cell in layers[0]),
+   "steps of a packing that shrinks by itself are no seconds", layers)
+
 # ---- in a browser -------------------------------------------------------------------------
 
 if MISSING:
