@@ -143,7 +143,7 @@ def markdown(summary, study):
         yield row(*(label_of(point["values"].get(a.name)) for a in axes), runs,
                   *(cell(values, point["reference"].get(name)) for name, values in point["measures"].items()))
     if any(values["sd"] is not None for point in summary["points"] for values in point["measures"].values()):
-        yield from ["", "Mean ± standard deviation (95 % interval of the mean)"
+        yield from ["", f"Mean ± standard deviation ({100 * summary['confidence']:g} % interval of the mean)"
                     + (" [published]." if any(point["reference"] for point in summary["points"]) else ".")]
     if summary["tests"]:
         yield from ["", *tests_table(summary, study)]

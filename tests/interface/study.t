@@ -75,6 +75,11 @@ ok("8 runs, 4 points of 2; 27 of 27 artifacts to make" in said
    and re.search(r"of one core, as stages foresee it; [\d.]+ [kM]B of disk \(", said),
    "their number, time and disk are said before", said)
 ok("\nMean ± standard deviation (95 % interval of the mean).\n" in said, "and what the numbers of the table are", said)
+write("small.json", {**small, "confidence": 0.8})
+said = study("table", "small.json")[2] + open(at("runs", "small", "summary.md"), encoding="utf-8").read()
+ok(said.count("(80 % interval of the mean)") == 2 and "95 %" not in said, "also with another confidence", said)
+write("small.json", small)
+study("table", "small.json")
 rows = table("small")
 ok([r["status"] for r in rows] == ["done"] * 8, "a row a run")
 source, chain = None, [("pack", []), ("tessellate", []), ("merge-nodes", []), ("dry", ["liquid=immobile", "throat_radius.seed=2"]),
