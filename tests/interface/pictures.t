@@ -74,6 +74,26 @@ with scratch() as folder:
     ok(re.findall(r">dry</tspan>[^\n]*\n[^>]*>([^<]*)<", drawn[0]) == counts,
        "the last panel of each limit is dry and has all cracks")
 
+    # In a box that repeats no throat is drawn through the box from one side to the other.
+    stage("pack", at("repeats"), sets=["periodic=[true,true,false]"])
+    stage("tessellate", at("repeats"), at("unmerged"))
+    stage("merge-nodes", at("unmerged"), at("merged"))
+    for limit in "inviscid", "immobile":
+        os.makedirs(at("around", limit))
+        drying, forces, response = (at("around", limit, f"{name}.h5") for name in ("drying", "forces", "response"))
+        stage("dry", at("merged"), drying, sets=[f"liquid={limit}"])
+        stage("force-protocol", drying, forces)
+        stage("dem-replay", forces, response)
+
+    def longest(svg):
+        """Of the throats, px."""
+        paths = "".join(re.findall(r'class="(?:dry|wet)[^"]*" d="([^"]*)"', svg))
+        ends = np.array(re.findall(r"M(-?[\d.]+) (-?[\d.]+)L(-?[\d.]+) (-?[\d.]+)", paths), float)
+        return np.linalg.norm(ends[:, 2:] - ends[:, :2], axis=1).max()
+
+    lengths = longest(draw("run/picture", at("around"), at("around.svg"))), longest(drawn[0])
+    ok(lengths[0] < 1.5 * lengths[1], "throats are not drawn through a box that repeats", lengths)
+
 # A layer without polygons: no map of when they opened, and gnuplot does not complain of an empty one.
 with scratch() as folder:
     at = lambda *names: os.path.join(folder, *names)
