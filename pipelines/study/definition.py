@@ -34,13 +34,15 @@ class Axis:
 
 @dataclass
 class Run:
-    """A run: its point, values by axis, seed and grains (None: those of the scene), overrides by key."""
+    """A run: its point, values by axis, seed and grains (None: those of the scene), overrides by key. Runs of other points
+    that have the same `twin` belong together: all seeds and the packing are the same."""
     number: int
     point: int
     values: dict
     seed: object
     grains: object
     overrides: dict
+    twin: tuple
     scene: object = None
     label: str = ""
 
@@ -341,8 +343,9 @@ def table_runs(said, path, replaced, scene):
         here = keys or (drawn_key(lambda stage: of_row, sets, row.get("import"), path) if seeds != [None] else [])
         for seed in seeds:
             own = next((v for k, v in sets.items() if k.endswith(".seed")), None) if seed is None else seed
-            runs.append(Run(len(runs) + 1, point, values, own, row.get("import"), {**said.get("set", {}), **sets, **{k: seed for k in here}},
-                            of_row, str(row.get("run", ""))))
+            mine = {**said.get("set", {}), **sets, **{k: seed for k in here}}
+            twin = tuple(sorted((k, str(v)) for k, v in mine.items() if k.endswith(".seed")))
+            runs.append(Run(len(runs) + 1, point, values, own, row.get("import"), mine, twin, of_row, str(row.get("run", ""))))
     return axes, points, runs
 
 
@@ -364,7 +367,7 @@ def axes_runs(said, path, replaced, scene, most):
             keys = drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, sets.get("import", packings[0]), path)
         for grains, seed in itertools.product(packings, seeds):
             mine = {**sets, **({key: seed for key in keys} if seed is not None else {})}
-            runs.append(Run(len(runs) + 1, number, values, seed, mine.pop("import", grains), mine, of_point))
+            runs.append(Run(len(runs) + 1, number, values, seed, mine.pop("import", grains), mine, (seed, grains), of_point))
     return axes, [values for values, _ in points], runs, keys
 
 

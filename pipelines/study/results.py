@@ -14,6 +14,7 @@ def read_runs(plan, folder, stale=()):
     """A row for each run: values of the axes, what was measured, and whether it is there: an artifact
     that is STALE is not."""
     study, cache = plan.study, {}
+    grains = short_names({run.grains for run in study.runs if run.grains})
     kinds = list(dict.fromkeys(m.kind for m in study.measures))
     said = {path: why(folder, path) for path, artifact in plan.artifacts.items() if not artifact.folded}
     rows = []
@@ -22,7 +23,7 @@ def read_runs(plan, folder, stale=()):
         if run.label:
             line["label"] = run.label
         if run.grains:
-            line["grains"] = os.path.basename(run.grains)
+            line["grains"] = grains[run.grains]
         if run.seed is not None:
             line["seed"] = run.seed
         results, missing = {}, ""
@@ -39,6 +40,12 @@ def read_runs(plan, folder, stale=()):
         line["artifacts"] = {kind: a.path for kind, a in made.items() if not a.folded}
         rows.append(line)
     return rows
+
+
+def short_names(paths):
+    """The names of files, by path; with their folders, where two have the same."""
+    names = [os.path.basename(path) for path in paths]
+    return {path: name if names.count(name) == 1 else path for path, name in zip(paths, names)}
 
 
 def text_of(value):
@@ -95,16 +102,16 @@ def comparisons(said, study, by_point):
             continue
         first, second = by_point[study.points.index(base)], by_point[k]
         yield {"point": k + 1, "with": study.points.index(base) + 1, "axis": axis, "paired": paired,
-               "measures": {m.name: compared(*values_of(m.name, first, second, paired), paired) for m in study.measures}}
+               "measures": {m.name: compared(*values_of(m.name, first, second, study if paired else None), paired) for m in study.measures}}
 
 
 def values_of(name, first, second, paired):
-    """The values of measure NAME of both groups of rows; paired: of seeds and grains that both have."""
+    """The values of measure NAME of both groups of rows; PAIRED, a study: of its runs that have a twin in both."""
     if not paired:
         return [r[name] for r in first if r[name] is not None], [r[name] for r in second if r[name] is not None]
-    key = lambda r: (r.get("seed"), r.get("grains"))
-    other = {key(r): r[name] for r in second if r[name] is not None}
-    pairs = [(r[name], other[key(r)]) for r in first if r[name] is not None and key(r) in other]
+    twin = lambda r: paired.runs[r["run"] - 1].twin
+    other = {twin(r): r[name] for r in second if r[name] is not None}
+    pairs = [(r[name], other[twin(r)]) for r in first if r[name] is not None and twin(r) in other]
     return [a for a, _ in pairs], [b for _, b in pairs]
 
 

@@ -114,6 +114,33 @@ ok(mine["student_p"] == theirs["paired_t"]["p"] and mine["wilcoxon_p"] == theirs
    "tests are those of crackstats", f"{mine} {theirs}")
 ok(all(os.path.getsize(at("runs/small", name)) > 1000 for name in ("figure.svg", "study.html")), "a figure and a page")
 
+# ---- which runs belong together ------------------------------------------------------------------------
+
+# Packings of one file name in several folders, and a table with several seeds: each run with its own twin, so that
+# what does not depend on the axis does not differ.
+for name in "wide", "narrow":
+    os.mkdir(at(name))
+    run("pack", "-q", "--set", f"counts=[{'4' if name == 'wide' else '2'},3,3]", "-o", at(name, "grains.h5"))
+write("layer.json", {"pack": {"method": "import"}, "dem-replay": {
+    "shrinkage": {"strain": 0.01, "steps": 2}, "cycles": 2, "most_cycles": 2, "unsettled": "count"}})
+twins = {"liquid": False, "compare": [{"axis": "friction", "with": 0.5}], "measure": ["bonds"]}
+write("folders.json", {**twins, "scene": "layer.json", "packings": ["wide/grains.h5", "narrow/grains.h5"],
+                       "axes": [{"key": "dem-replay.friction", "values": [0.5, 0.4]}]})
+write("grown.json", {"pack": {"method": "soft_spheres", "upper": [3e-6, 3e-6, 3e-6], "bonds": "touching"}, "dem-replay": {
+    "shrinkage": {"strain": 0.01, "steps": 2}, "cycles": 2, "most_cycles": 2, "unsettled": "count"}})
+write("twins.tsv", "dem-replay.friction\tdem-replay.bond.strength.seed\tpack.seed\n"
+      + "0.5\t1\t1\n0.5\t1\t2\n0.4\t1\t2\n0.4\t1\t1\n")
+write("several.json", {**twins, "scene": "grown.json", "runs": "twins.tsv"})
+for name in "folders", "several":
+    fine, *_ = study("make", f"{name}.json")
+    with open(at("runs", name, "summary.json"), encoding="utf-8") as lines:
+        told = json.load(lines)
+    bonds = [point["measures"]["bonds"] for point in told["points"]]
+    ok(fine and bonds[0]["least"] < bonds[0]["largest"] and told["tests"][0]["measures"]["bonds"]["difference"] == 0
+       and told["tests"][0]["measures"]["bonds"]["sd"] == 0, f"{name}: runs of the same grains are compared", told)
+ok(sorted({r["grains"] for r in table("folders")}) == [at("narrow", "grains.h5"), at("wide", "grains.h5")],
+   "files of one name are told apart by their folders", table("folders"))
+
 # ---- one value more, one value other, a table of runs -------------------------------------------------
 
 fine, counts, *_ = study("make", "small.json", "--seeds=1,2,3")
