@@ -30,13 +30,17 @@ def titled(axis):
     return axis.title + (f", {axis.unit}" if axis.unit else "")
 
 
+def named(values, axes):
+    """What VALUES by axis are called."""
+    return ", ".join(label_of(values[a.name]) + (f" {a.unit}" if a.unit else "") for a in axes)
+
+
 def series_of(study, without):
     """The combinations of the other axes that the points have."""
     axes = [a for a in study.axes if a not in without]
     combined = [dict(zip((a.name for a in axes), values)) for values in itertools.product(*(a.values for a in axes))]
     combined = [c for c in combined if any(fits(p, {n: [v] for n, v in c.items()}) for p in study.points)]
-    name = lambda c: ", ".join(label_of(c[a.name]) + (f" {a.unit}" if a.unit else "") for a in axes)
-    return [(name(c), c) for c in combined[:MOST_SERIES]]
+    return [(named(c, axes), c) for c in combined[:MOST_SERIES]]
 
 
 def of_series(summary, choice):
@@ -69,7 +73,7 @@ def strip(rows, summary, study):
         tables[f"means-{m}"] = [(k, v["mean"], *(v["mean"] if v[e] is None else v[e] for e in ("low", "high")))
                                 for k, v, _ in found if v["mean"] is not None] or ["NaN NaN NaN NaN"]
         tables[f"reference-{m}"] = [(k, r) for k, _, r in found if r is not None] or ["NaN NaN"]
-    names = [name for name, _ in series_of(study, [])] if len(study.points) <= MOST_SERIES else []
+    names = [named(point, study.axes) for point in study.points] if len(study.points) <= MOST_SERIES else []
     return tables, {"names": "|".join(names or [str(k + 1) for k in range(len(study.points))])}
 
 

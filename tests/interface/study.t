@@ -114,6 +114,16 @@ ok(mine["student_p"] == theirs["paired_t"]["p"] and mine["wilcoxon_p"] == theirs
    "tests are those of crackstats", f"{mine} {theirs}")
 ok(all(os.path.getsize(at("runs/small", name)) > 1000 for name in ("figure.svg", "study.html")), "a figure and a page")
 
+# A table's points are in the order of its rows, which need not be that of its values.
+cases = [("uniform", "fixed"), ("front", "free"), ("uniform", "free"), ("front", "fixed")]
+write("mixed.tsv", "dem-replay.shrinkage.law\tdem-replay.support\n" + "".join("\t".join(row) + "\n" for row in cases))
+write("shrinks.json", {"pack": {"counts": [3, 3, 3]}, "dem-replay": {
+    "shrinkage": {"strain": 0.01, "steps": 2}, "cycles": 2, "most_cycles": 2, "unsettled": "count"}})
+write("mixed.json", {"scene": "shrinks.json", "liquid": False, "runs": "mixed.tsv", "measure": ["cracks.total"]})
+fine, *_ = study("make", "mixed.json")
+names = re.findall(r">(uniform|front), (fixed|free)<", read(at("runs/mixed/figure.svg")).decode())
+ok(fine and names == cases, "the figure names its points in their order", names)
+
 # ---- which runs belong together ------------------------------------------------------------------------
 
 # Packings of one file name in several folders, and a table with several seeds: each run with its own twin, so that
