@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import stages
 from common import LIBRARY, document, refuse
+from plan import kinds_wanted
 from schema import nearest, wrong
 
 TREE = os.path.realpath(f"{LIBRARY}/../..")
@@ -232,10 +233,12 @@ def table_points(path, is_seed):
 
 # ---- seeds ------------------------------------------------------------------------------
 
-def drawn_key(scene_of, sets, grains, path):
-    """The seed of what the scene draws; GRAINS: the file that they come from, if there is one."""
+def drawn_key(scene_of, sets, grains, path, made):
+    """The seed of what the scene draws in one of the stages MADE; GRAINS: the file that they come from, if there is one."""
     for key, used in stages.DRAWN.items():
         stage = key.split(".")[0]
+        if stage not in made:
+            continue
         section = json.loads(json.dumps(stages.sections(scene_of(stage)).get(stage, {})))
         for name, value in sets.items():
             if name.startswith(f"{stage}."):
@@ -246,7 +249,7 @@ def drawn_key(scene_of, sets, grains, path):
                 place[last] = value
         if used(section, grains):
             return [key]
-    return refuse(65, f"{path}: seeds: the scene draws nothing (neither radii of throats nor grains nor strengths); "
+    return refuse(65, f"{path}: seeds: the scene draws nothing in the stages of this study (neither radii of throats nor grains nor strengths); "
                   "seeds.keys says what takes them, packings gives other grains")
 
 
@@ -329,7 +332,7 @@ def count_first(said, axes, seeds, packings, path, most):
         refuse(65, f"{path}: {runs} runs ({shape}), more than {most}: fewer values, or MOST_RUNS={runs}")
 
 
-def table_runs(said, path, replaced, scene):
+def table_runs(said, path, replaced, scene, made):
     """Axes, points and runs of a table."""
     table = located(said["runs"], path)
     axes, points, rows = table_points(table, lambda key: key.endswith(".seed"))
@@ -340,7 +343,7 @@ def table_runs(said, path, replaced, scene):
         of_row = row.get("scene", scene)
         if not of_row:
             refuse(65, f"{table}: row {number}: no scene: a column scene, or SCENE=")
-        here = keys or (drawn_key(lambda stage: of_row, sets, row.get("import"), path) if seeds != [None] else [])
+        here = keys or (drawn_key(lambda stage: of_row, sets, row.get("import"), path, made) if seeds != [None] else [])
         for seed in seeds:
             own = next((v for k, v in sets.items() if k.endswith(".seed")), None) if seed is None else seed
             mine = {**said.get("set", {}), **sets, **{k: seed for k in here}}
@@ -349,7 +352,7 @@ def table_runs(said, path, replaced, scene):
     return axes, points, runs
 
 
-def axes_runs(said, path, replaced, scene, most):
+def axes_runs(said, path, replaced, scene, made, most):
     """Axes, points and runs of crossed axes."""
     axes = [read_axis(axis, f"{path}: axes[{k}]") for k, axis in enumerate(said.get("axes", []))]
     for k, axis in enumerate(axes):
@@ -364,7 +367,7 @@ def axes_runs(said, path, replaced, scene, most):
         of_point = sets.pop("scene", scene) or refuse(65, f"{path}: has no scene")
         scene_of = lambda stage: of_point.get(stage, of_point.get("conditions")) if isinstance(of_point, dict) else of_point
         if not keys and seeds != [None]:
-            keys = drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, sets.get("import", packings[0]), path)
+            keys = drawn_key(lambda s: scene_of(s) or next(iter(of_point.values())), sets, sets.get("import", packings[0]), path, made)
         for grains, seed in itertools.product(packings, seeds):
             mine = {**sets, **({key: seed for key in keys} if seed is not None else {})}
             runs.append(Run(len(runs) + 1, number, values, seed, mine.pop("import", grains), mine, (seed, grains), of_point))
@@ -388,11 +391,14 @@ def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
     elif own:
         own = located(own, path)
     measures = [read_measure(each, f"{path}: measure[{k}]") for k, each in enumerate(said.get("measure", CRACKS))]
+    # One seed tells no runs apart: then it may be of what no stage of the study draws.
+    made = {stages.MADE[kind][0] for kind in kinds_wanted(Study(path, "", said, [], [], [], measures))} \
+        if len(seeds_of(said, seeds, path)[0]) > 1 else set(stages.STAGES)
     keys = []
     if "runs" in said:
-        axes, points, runs = table_runs(said, path, seeds, own)
+        axes, points, runs = table_runs(said, path, seeds, own, made)
     else:
-        axes, points, runs, keys = axes_runs(said, path, seeds, own, most)
+        axes, points, runs, keys = axes_runs(said, path, seeds, own, made, most)
     if len(runs) > most:
         refuse(65, f"{path}: {len(runs)} runs, more than {most}: fewer values, or MOST_RUNS={len(runs)}")
     for key in keys:

@@ -124,6 +124,16 @@ fine, *_ = study("make", "mixed.json")
 names = re.findall(r">(uniform|front), (fixed|free)<", read(at("runs/mixed/figure.svg")).decode())
 ok(fine and names == cases, "the figure names its points in their order", names)
 
+# ---- what seeds draw ------------------------------------------------------------------------------------
+
+# Throats that nothing dries have no radii to draw: seeds are those of the packing.
+write("unused.json", {"scene": "mixture.json", "liquid": False, "seeds": 2, "measure": ["bonds"]})
+write("mixture.json", {"pack": {"method": "soft_spheres", "upper": [3e-6, 3e-6, 3e-6], "bonds": "touching"},
+                       "dry": {"throat_radius": {"distribution": "normal"}},
+                       "dem-replay": {"shrinkage": {"strain": 0.01, "steps": 2}, "cycles": 2, "most_cycles": 2, "unsettled": "count"}})
+fine, counts, *_ = study("make", "unused.json")
+ok(fine and counts["packing"] == 2 and len({r["bonds"] for r in table("unused")}) == 2, "seeds draw what a stage of the study draws", counts)
+
 # ---- which runs belong together ------------------------------------------------------------------------
 
 # Packings of one file name in several folders, and a table with several seeds: each run with its own twin, so that
