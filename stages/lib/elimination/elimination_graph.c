@@ -11,6 +11,7 @@
 #include <string.h>
 
 enum { SPARE = 3 }; // edges that a vertex may gain before its row moves
+enum { HUB = 64 };  // a vertex with more edges is a hub
 
 static int find(const struct half_edge *half, int count, int to)
 {
@@ -20,18 +21,39 @@ static int find(const struct half_edge *half, int count, int to)
     return k;
 }
 
-// Copies row I of the matrix, parallel links merged.
-static int copy_row(const struct conductance_matrix *matrix, int i, int ground,
-                    double max_weight, struct half_edge *half)
+// Rows in the making. PLACE (n + n_kept + 1) of each neighbour in the row, once there.
+struct rows {
+    struct elimination_graph *graph;
+    int *place;
+};
+
+static struct rows rows_init(struct elimination_graph *graph)
 {
-    int count = 0;
-    for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++) {
-        const int to = matrix->column[k] < ground ? matrix->column[k] : ground;
-        const int place = find(half, count, to);
-        if (place == count) half[count++] = (struct half_edge){0, to};
-        half[place].weight += (float)(matrix->value[k] / max_weight);
+    struct rows rows = {graph, NEW_ARRAY(int, graph->n + graph->n_kept + 1)};
+    graph->n_half = 0;
+    return rows;
+}
+
+// Adds to the last row, in which FIRST is its first edge. Parallel edges are merged.
+static void rows_add(const struct rows *rows, size_t first, int to, float weight)
+{
+    struct elimination_graph *graph = rows->graph;
+    const size_t place = (size_t)rows->place[to];
+    const bool is_there =
+        place >= first && place < graph->n_half && graph->half[place].to == to;
+    if (is_there) {
+        graph->half[place].weight += weight;
+        return;
     }
-    return count;
+    rows->place[to] = (int)graph->n_half;
+    graph->half[graph->n_half++] = (struct half_edge){weight, to};
+}
+
+static struct vertex rows_end(const struct rows *rows, size_t first)
+{
+    const int count = (int)(rows->graph->n_half - first);
+    rows->graph->n_half += SPARE;
+    return (struct vertex){(int)first, count, count + SPARE, false, false, count > HUB};
 }
 
 // Room for N vertices with COUNT edges, and for rows that move.
@@ -51,12 +73,16 @@ struct elimination_graph elimination_graph_of(const struct conductance_matrix *m
                                       .vertex = NEW_ARRAY(struct vertex, n),
                                       .index = NEW_ARRAY(int, ground + 1)};
     reserve_entries(&graph, n, (size_t)matrix->offset[n]);
+    const struct rows rows = rows_init(&graph);
     for (int i = 0; i < n; i++) {
-        const int first = (int)graph.n_half;
-        const int count = copy_row(matrix, i, ground, max_weight, &graph.half[first]);
-        graph.vertex[i] = (struct vertex){first, count, count + SPARE, false, false};
-        graph.n_half += (size_t)count + SPARE;
+        const size_t first = graph.n_half;
+        for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
+            rows_add(&rows, first,
+                     matrix->column[k] < ground ? matrix->column[k] : ground,
+                     (float)(matrix->value[k] / max_weight));
+        graph.vertex[i] = rows_end(&rows, first);
     }
+    free(rows.place);
     for (int i = 0; i <= ground; i++)
         graph.index[i] = i;
     return graph;
@@ -102,7 +128,7 @@ static void add_weight(struct elimination_graph *graph, int at, int to, float we
     }
     struct vertex *vertex = &graph->vertex[at];
     struct half_edge *half = &graph->half[vertex->first];
-    const int k = find(half, vertex->count, to);
+    const int k = vertex->is_hub ? vertex->count : find(half, vertex->count, to);
     if (k < vertex->count) {
         half[k].weight += weight;
         return;
@@ -116,6 +142,7 @@ void elimination_graph_remove_edge(struct elimination_graph *graph, int at,
 {
     if (at >= graph->n) return;
     struct vertex *vertex = &graph->vertex[at];
+    if (vertex->is_hub) return;
     struct half_edge *half = &graph->half[vertex->first];
     half[find(half, vertex->count, eliminated)] = half[vertex->count - 1];
     vertex->count--;
@@ -136,29 +163,28 @@ void elimination_graph_compact(struct elimination_graph *graph)
     size_t count = 0;
     graph->n = 0;
     for (int i = 0; i < old.n; i++) {
-        number[i] = graph->n;
-        graph->n += !old.vertex[i].eliminated;
+        number[i] = old.vertex[i].eliminated ? -1 : graph->n++;
         count += old.vertex[i].eliminated ? 0 : (size_t)old.vertex[i].count;
     }
     for (int k = 0; k <= old.n_kept; k++)
         number[old.n + k] = graph->n + k;
     reserve_entries(graph, graph->n, count);
-    graph->n_half = 0;
+    const struct rows rows = rows_init(graph);
     for (int i = 0; i < old.n; i++) {
         const struct vertex from = old.vertex[i];
         if (from.eliminated) continue;
-        const int first = (int)graph->n_half;
+        const size_t first = graph->n_half;
         for (int k = 0; k < from.count; k++) {
             const struct half_edge half = old.half[from.first + k];
-            graph->half[first + k] = (struct half_edge){half.weight, number[half.to]};
+            if (number[half.to] >= 0)
+                rows_add(&rows, first, number[half.to], half.weight);
         }
-        graph->vertex[number[i]] =
-            (struct vertex){first, from.count, from.count + SPARE, false, false};
+        graph->vertex[number[i]] = rows_end(&rows, first);
         graph->index[number[i]] = old.index[i];
-        graph->n_half += (size_t)from.count + SPARE;
     }
     for (int k = 0; k <= old.n_kept; k++)
         graph->index[graph->n + k] = old.index[old.n + k];
+    free(rows.place);
     free(old.half);
     free(number);
 }

@@ -17,10 +17,16 @@ struct half_edge {
 
 // A vertex: its edges are half[first] to half[first + count - 1], in no order, each
 // neighbour once. A row that needs more than CAPACITY moves to the end of HALF.
+//
+// To look for one neighbour in the row of a hub costs as much as the row is long. So
+// its row only grows until the graph is compacted, and until then is no use once a
+// neighbour has been eliminated: eliminated ones stay, and one neighbour may be there
+// twice.
 struct vertex {
     int first, count, capacity;
     bool eliminated, neighbour_eliminated; // beside: a neighbour went since the graph
                                            // was last packed
+    bool is_hub;
 };
 
 // Given places have no row. The first N_KEPT of them, n to n + n_kept - 1, keep their
