@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Small systems have a Cholesky factor (sparse/cholesky.h) of the sites that are
-// not held. Larger ones are solved by conjugate gradients on all sites, in which those
-// that are held stay 0. In both the true residual, from differences of compensated
-// levels, decides when it is enough.
+// not held, and are solved to rounding. Larger ones are solved by conjugate gradients
+// on all sites, in which those that are held stay 0. In both the true residual, from
+// differences of compensated levels, decides when it is enough.
 //
 // The preconditioner is an approximate factor in two parts. Sites that may be held or
 // freed, and those with many links, come last. Elimination of the others leaves a small
@@ -20,7 +20,6 @@
 #include "sparse/cholesky.h"
 #include "sparse/conjugate_gradients.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -28,9 +27,9 @@
 static const double REDUCTION = 1e-4;
 // Of the tolerance, what a correction aims at.
 static const double MARGIN = 0.3;
-// So many sites may have come or gone, or be held though they are not among the last,
-// before the first part is made again.
-enum { MOST_CHANGED = 20 };
+// So many sites, or one of so many, may have come or gone, or be held though they are
+// not among the last, before the first part is made again.
+enum { MOST_CHANGED = 20, CHANGED_OF = 2000 };
 // Sites with more links (clusters around which films are everywhere) are among the
 // last.
 enum { MOST_LINKS = 100 };
@@ -46,7 +45,7 @@ enum { DIRECT_MOST = 1500, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
 struct film_factor {
     struct approximate_cholesky *first, *last; // NULL: to be made
     int n, n_first;
-    int *place; // (n) ascending
+    int *place; // (n)
     int *row;   // (n) of each place
     int *site;  // (n) by row, the site there now; -1: none
     int n_new, new_capacity;
@@ -333,27 +332,40 @@ static void make_last(const struct film_flow *flow)
     free(link);
 }
 
-// Both lists of places ascend. Returns how many sites have come or gone, or are held
-// that are not among the last.
+// Names are below this.
+static int end_of_places(const struct film_flow *flow)
+{
+    const struct film_factor *factor = flow->factor;
+    int most = -1;
+    for (int i = 0; i < flow->matrix->n; i++)
+        most = flow->place[i] > most ? flow->place[i] : most;
+    for (int k = 0; k < factor->n; k++)
+        most = factor->place[k] > most ? factor->place[k] : most;
+    return most + 1;
+}
+
+// Returns how many sites have come or gone, or are held that are not among the last.
 static int find_sites(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
     const int n = flow->matrix->n;
-    int i = 0, gone = 0, held = 0;
-    factor->n_new = 0;
-    for (int k = 0; k <= factor->n; k++) {
-        const int place = k < factor->n ? factor->place[k] : INT_MAX;
-        for (; i < n && flow->place[i] < place; i++) {
-            GROW_ARRAY(factor->new_site, factor->n_new, factor->new_capacity);
-            factor->new_site[factor->n_new++] = i;
-        }
-        if (k == factor->n) break;
-        const int row = factor->row[k];
-        const bool found = i < n && flow->place[i] == place;
-        held += found && row < factor->n_first && flow->held[i];
-        gone += !found;
-        factor->site[row] = found ? i++ : -1;
+    int *site = NEW_ARRAY(int, end_of_places(flow)), gone = 0, held = 0; // 1 + index
+    for (int i = 0; i < n; i++)
+        site[flow->place[i]] = i + 1;
+    for (int k = 0; k < factor->n; k++) {
+        const int row = factor->row[k], i = site[factor->place[k]] - 1;
+        factor->site[row] = i;
+        gone += i < 0;
+        held += i >= 0 && row < factor->n_first && flow->held[i];
+        site[factor->place[k]] = 0;
     }
+    factor->n_new = 0;
+    for (int i = 0; i < n; i++) {
+        if (site[flow->place[i]] == 0) continue;
+        GROW_ARRAY(factor->new_site, factor->n_new, factor->new_capacity);
+        factor->new_site[factor->n_new++] = i;
+    }
+    free(site);
     return gone + factor->n_new + held;
 }
 
@@ -368,7 +380,9 @@ static bool last_has_changed(const struct film_flow *flow)
 static void prepare_factor(const struct film_flow *flow)
 {
     struct film_factor *factor = flow->factor;
-    if (!factor->first || find_sites(flow) > MOST_CHANGED) {
+    const int most = flow->matrix->n / CHANGED_OF;
+    if (!factor->first ||
+        find_sites(flow) > (most > MOST_CHANGED ? most : MOST_CHANGED)) {
         make_first(flow);
         find_sites(flow);
     }
@@ -447,9 +461,10 @@ static bool solve_iteratively(struct film_flow *flow, double tolerance,
 
 bool film_balance(struct film_flow *flow, double tolerance, double *residual)
 {
+    const bool directly = flow->matrix->n <= DIRECT_MOST;
     find_residual(flow, residual);
-    if (!(imbalance(flow, tolerance, residual) > tolerance)) return true;
-    return flow->matrix->n <= DIRECT_MOST
-               ? solve_directly(flow, tolerance, residual)
-               : solve_iteratively(flow, tolerance, residual);
+    if (!(imbalance(flow, tolerance, residual) > (directly ? 0 : tolerance)))
+        return true;
+    return directly ? solve_directly(flow, tolerance, residual)
+                    : solve_iteratively(flow, tolerance, residual);
 }

@@ -7,9 +7,9 @@
 // hold far too many, which are freed in round after round. So ends of films are held
 // first, and then, of the clusters below their least, those that lack most among those
 // near them: they hold the others up. Rounds begin with some sweeps of Gauss-Seidel,
-// which find what changes near a site that has been held or freed. A part of the
-// network never loses its last held site: what they supply is what is taken there, 0 or
-// more, so not all surpluses are below 0.
+// which hold and free sites as they go: they find what changes near a site. A part of
+// the network never loses its last held site: what they supply is what is taken there,
+// 0 or more, so not all surpluses are below 0.
 //
 // If all that are below their least are held at once, no level falls from the second
 // round on, because the matrix is an M-matrix: no set of held sites comes back, and the
@@ -27,8 +27,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-// Which sites are held is found to so many tolerances first.
-static const double COARSE = 1e4;
+// Which sites are held is found to so many tolerances first, then to ever fewer.
+static const double COARSE = 1e4, FINER = 1e-2;
 
 // Sweeps of Gauss-Seidel before each of these rounds.
 enum { SWEEPS = 3 };
@@ -120,7 +120,8 @@ static int change_held(struct film_flow *flow, double tolerance, bool cautious,
     return changed + hold(flow, cautious);
 }
 
-// The level of site I that balances it with those around it, or its least.
+// The level of site I that balances it with those around it, or its least if it may be
+// held there.
 static double balanced_level(const struct film_flow *flow, const double *level, int i)
 {
     const struct conductance_matrix *matrix = flow->matrix;
@@ -128,11 +129,10 @@ static double balanced_level(const struct film_flow *flow, const double *level, 
     for (int k = matrix->offset[i]; k < matrix->offset[i + 1]; k++)
         sum += matrix->value[k] * level[matrix->column[k]];
     const double balanced = sum / matrix->diagonal[i];
-    return flow->held[i] ? fmax(flow->least[i], balanced) : balanced;
+    return may_be_held(flow, i) ? fmax(flow->least[i], balanced) : balanced;
 }
 
-// Gauss-Seidel, forwards and back. It frees sites, but holds none: sweeps from a poor
-// guess would hold too many.
+// Gauss-Seidel, forwards and back.
 static void relax(struct film_flow *flow)
 {
     const int n = flow->matrix->n;
@@ -150,7 +150,7 @@ static void relax(struct film_flow *flow)
     }
     for (int i = 0; i < n; i++) {
         const bool low = !(level[i] > (1 + ROUNDING) * flow->least[i]);
-        flow->held[i] = low && flow->held[i];
+        flow->held[i] = low && may_be_held(flow, i);
         flow->level[i].value = flow->held[i] ? flow->least[i] : level[i];
         flow->level[i].lost = 0;
     }
@@ -205,7 +205,7 @@ bool film_flow_solve(struct film_flow *flow, double tolerance)
         if (change_held(flow, coarse, cautious, residual) > 0) continue;
         found = !(coarse > tolerance);
         if (found) break;
-        coarse = tolerance;
+        coarse = fmax(tolerance, FINER * coarse);
     }
     for (int i = 0; i < n; i++)
         flow->surplus[i] = flow->held[i] ? fmax(0, -residual[i]) : 0;

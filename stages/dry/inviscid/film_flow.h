@@ -18,7 +18,7 @@ struct film_factor; // film_balance.h
 // potentials; what is taken is a flow, 0 or more.
 struct film_flow {
     const struct conductance_matrix *matrix; // of all n sites
-    const int *place;                        // (n) ascending: what names a site
+    const int *place;                        // (n) what names a site, 0 or more
     const double *taken, *least;             // (n)
     struct film_factor *factor; // of earlier flows, on some of the same places
     bool *held;                 // (n) the level is the least; first a guess, with one

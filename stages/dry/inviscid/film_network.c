@@ -25,8 +25,8 @@ struct film_links {
     int n_place;
     int n, capacity;
     struct film_link *link;
-    int *parent;   // (n_place) what films join
-    bool *is_site; // (n_place)
+    int *parent;  // (n_place) what films join
+    int *n_films; // (n_place)
 };
 
 static bool is_film_node(const struct occupancy *occupancy, int node)
@@ -75,7 +75,8 @@ static void add_link(struct film_links *links, int a, int b, double conductance,
     if (a == b) return;
     GROW_ARRAY(links->link, links->n, links->capacity);
     links->link[links->n++] = (struct film_link){{{a, b}, conductance}, depth, 1};
-    links->is_site[a] = links->is_site[b] = true;
+    links->n_films[a]++;
+    links->n_films[b]++;
     unite_sets(links->parent, a, b);
 }
 
@@ -116,20 +117,50 @@ static void link_films(struct film_links *links)
     free(b);
 }
 
-// The lowest place of a set is its root, and clusters come before nodes: so a part of
-// the network has a cluster if its root is one.
-static void number_sites(struct film_links *links, struct film_network *films)
+// NODE becomes all nodes, those of few films first, else in the order of CURVE.
+static void order_nodes(const struct film_links *links, const int32_t *curve, int *node)
+{
+    const struct network *network = links->occupancy->network;
+    const int *n_films = links->n_films + network->n_throat;
+    int most = 0;
+    for (int i = 0; i < network->n_node; i++)
+        most = n_films[i] > most ? n_films[i] : most;
+    int *begin = NEW_ARRAY(int, most + 2);
+    for (int i = 0; i < network->n_node; i++)
+        begin[n_films[i] + 1]++;
+    for (int k = 0; k < most; k++)
+        begin[k + 1] += begin[k];
+    for (int k = 0; k < network->n_node; k++)
+        node[begin[n_films[curve[k]]]++] = curve[k];
+    free(begin);
+}
+
+// Adds PLACE, if it is a site. The lowest place of a set is its root, and clusters come
+// before nodes: so a part of the network has a cluster if its root is one.
+static void add_site(struct film_links *links, int place, int *site,
+                     struct film_network *films)
+{
+    const int root = set_root(links->parent, place);
+    if (links->n_films[place] == 0 || root >= links->occupancy->network->n_throat)
+        return;
+    site[place] = films->n_site;
+    films->root[films->n_site] = site[root];
+    films->place[films->n_site++] = place;
+}
+
+static void number_sites(struct film_links *links, const int32_t *curve,
+                         struct film_network *films)
 {
     const int n_throat = links->occupancy->network->n_throat;
-    int *site = NEW_ARRAY(int, links->n_place);
+    const int n_node = links->occupancy->network->n_node;
+    int *site = NEW_ARRAY(int, links->n_place), *node = NEW_ARRAY(int, n_node);
     films->place = NEW_ARRAY(int, links->n_place);
     films->root = NEW_ARRAY(int, links->n_place);
-    for (int p = 0; p < links->n_place; p++) {
-        if (!links->is_site[p] || set_root(links->parent, p) >= n_throat) continue;
-        site[p] = films->n_site;
-        films->root[films->n_site] = site[set_root(links->parent, p)];
-        films->place[films->n_site++] = p;
-    }
+    order_nodes(links, curve, node);
+    for (int c = 0; c < n_throat; c++)
+        add_site(links, c, site, films);
+    for (int k = 0; k < n_node; k++)
+        add_site(links, n_throat + node[k], site, films);
     for (int l = 0; l < links->n; l++) {
         struct film_link link = links->link[l];
         if (set_root(links->parent, link.link.site[0]) >= n_throat) continue;
@@ -138,6 +169,7 @@ static void number_sites(struct film_links *links, struct film_network *films)
         links->link[films->n_link++] = link;
     }
     free(site);
+    free(node);
 }
 
 // The matrix of the links, each with its ratio.
@@ -171,22 +203,23 @@ double film_network_weigh(struct film_network *films, const struct film_law *law
     return changed;
 }
 
-struct film_network film_network_init(const struct occupancy *occupancy)
+struct film_network film_network_init(const struct occupancy *occupancy,
+                                      const int32_t *curve)
 {
     const struct network *network = occupancy->network;
     struct film_links links = {.occupancy = occupancy,
                                .n_place = network->n_throat + network->n_node};
     struct film_network films = {0};
     links.parent = NEW_ARRAY(int, links.n_place);
-    links.is_site = NEW_ARRAY(bool, links.n_place);
+    links.n_films = NEW_ARRAY(int, links.n_place);
     for (int p = 0; p < links.n_place; p++)
         links.parent[p] = p;
     link_films(&links);
-    number_sites(&links, &films);
+    number_sites(&links, curve, &films);
     films.link = links.link;
     fill_matrix(&films);
     free(links.parent);
-    free(links.is_site);
+    free(links.n_films);
     return films;
 }
 

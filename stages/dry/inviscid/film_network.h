@@ -18,7 +18,10 @@ struct film_link {
     double ratio; // of what flows there to what would without gravity
 };
 
-// It owns its arrays. Only sites that films join to a cluster are there.
+// It owns its arrays. Only sites that films join to a cluster are there: clusters
+// first, then nodes, those with few films before others, and of these in the order of
+// CURVE. So rows of the matrix have one length for long, and sites beside each other
+// are near in memory: sweeps and products take two thirds of the time.
 struct film_network {
     int n_site;
     int *place;                       // (n_site) a cluster, or n_throat + node
@@ -28,9 +31,11 @@ struct film_network {
     struct film_link *link; // (n_link) of sites
 };
 
-// Of OCCUPANCY, whose film law says what a throat conducts. O(n_node). The caller frees
-// it with film_network_free.
-struct film_network film_network_init(const struct occupancy *occupancy);
+// Of OCCUPANCY, whose film law says what a throat conducts. CURVE (n_node): all nodes,
+// in the order of order_along_curve. O(n_node). The caller frees it with
+// film_network_free.
+struct film_network film_network_init(const struct occupancy *occupancy,
+                                      const int32_t *curve);
 
 // How deep the middle of THROAT is below the top of the box, scaled; 0 without gravity.
 double film_depth(const struct occupancy *occupancy, int throat);

@@ -20,6 +20,7 @@
 #include "film_basins.h"
 #include "film_flow.h"
 #include "film_network.h"
+#include "geometry/space_filling_curve.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -54,6 +55,7 @@ struct film_supply *film_supply_create(const struct emptying_times *times)
         .level = NEW_ARRAY(struct compensated, times->n_place),
         .is_known = NEW_ARRAY(bool, times->n_place),
         .evaporates = NEW_ARRAY(double, times->n_place),
+        .curve = order_along_curve(network->n_node, network->node_position),
         .factor = film_factor_create(),
         .basins = film_basins_create(times->n_place, network->n_throat),
         .scale = 1,
@@ -74,6 +76,7 @@ void film_supply_free(struct film_supply *films)
     free(films->level);
     free(films->is_known);
     free(films->evaporates);
+    free(films->curve);
     film_factor_free(films->factor);
     film_basins_free(films->basins);
     free(films);
@@ -295,7 +298,7 @@ void film_supply_find(struct emptying_times *times)
     const int n_throat = times->occupancy->network->n_throat;
     if (film_supply_may_be_kept(films)) film_factor_forget(films->factor);
     begin(times);
-    struct film_network network = film_network_init(times->occupancy);
+    struct film_network network = film_network_init(times->occupancy, films->curve);
     forget_unreached(films, &network, n_throat, times->occupancy->network->n_node);
     const int n = network.n_site;
     double *taken = NEW_ARRAY(double, n), *least = NEW_ARRAY(double, n);

@@ -24,6 +24,7 @@ struct film_supply {
     struct compensated *level;  // (n_place) cube of the menisci's radius, scaled
     bool *is_known;             // (n_place) the level is that of the last solution
     double *evaporates;         // (n_place) scaled, when last found; 0: no shares
+    int32_t *curve;             // (n_node) nodes, near ones after each other
     struct film_factor *factor; // kept from one solution to the next
     bool is_due;                // reservoirs have changed so that flows must be found
     double lost;                // drawn since from basins that have no cluster any more
