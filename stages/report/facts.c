@@ -157,7 +157,8 @@ static double share_of_box(const struct packing *packing, struct vector place, i
 {
     const double low = component(packing->lower, axis),
                  high = component(packing->upper, axis);
-    return (component(place, axis) - low) / (high - low);
+    const double share = (component(place, axis) - low) / (high - low);
+    return packing->periodic[axis] ? share - floor(share) : share;
 }
 
 // Several bonds may break under one load; the first listed stands for them.

@@ -80,6 +80,13 @@ first = bonds[crack_bonds[0]]
 ok(len(modes) > 3 and len(set(modes)) == 2, "the run breaks bonds in both modes", np.bincount(modes))
 ok(f"{len(modes)} of {len(bonds)} bonds broke" in text, "the first sentence counts them")
 ok(f"between grains {first[0]} and {first[1]}" in text, "where the first one is")
+shutil.copy(at("response.h5"), at("around.h5"))
+with h5py.File(at("around.h5"), "r+") as file:
+    file["domain/periodic"][:] = [True, True, False]
+    low, high = file["domain/lower"][:], file["domain/upper"][:]
+    file["cracks/position"][0] = low + np.array([1.15, -0.25, 0.5]) * (high - low)
+ok("at 50 % of the height of the box (z), 15 % along x and 75 % along y" in run("report", at("around.h5")).decode(),
+   "and beyond a side that repeats where its image is")
 with h5py.File(at("forces.h5")) as file:
     strength = np.linalg.norm(file["force"][:], axis=2)
 heaviest = int(re.search(r"grain (\d+): the liquid pulls it", text)[1])
