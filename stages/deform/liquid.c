@@ -8,6 +8,9 @@
 // those that empty. A priority queue of ranks in the order of entry
 // (network/entry_order.h) has the throats that can be filled or emptied next.
 //
+// Throats that have closed hold nothing, nor do those that these shut in, as in dry:
+// their liquid is surplus of their cluster.
+//
 // Clusters compete for the room between them: that with the widest throat is the first.
 // So nothing depends on how throats are numbered.
 #include "liquid.h"
@@ -16,6 +19,7 @@
 #include "basics/disjoint_sets.h"
 #include "basics/memory.h"
 #include "basics/ranks.h"
+#include "network/enclosed.h"
 #include "network/entry_order.h"
 
 #include <stdlib.h>
@@ -32,6 +36,27 @@ struct liquid_state {
     int *cluster;     // (n_throat) widest throat of its liquid; -1 without
     struct rank_queue queue;
 };
+
+// (n_throat) Which throats dry will let hold liquid. The caller frees it.
+static bool *find_usable(struct network network, unsigned open_walls)
+{
+    const int n = network.n_throat;
+    uint8_t *kind =
+        duplicate(network.throat_kind, (size_t)n, sizeof *network.throat_kind);
+    network.throat_kind = kind;
+    if (shut_closed_throats(&network)) {
+        bool *open = NEW_ARRAY(bool, network.n_node);
+        for (int i = 0; i < network.n_node; i++)
+            open[i] = network.node_walls[i] & open_walls;
+        empty_enclosed_throats(&network, open);
+        free(open);
+    }
+    bool *usable = NEW_ARRAY(bool, n);
+    for (int t = 0; t < n; t++)
+        usable[t] = kind[t] == THROAT_NETWORK;
+    free(kind);
+    return usable;
+}
 
 static struct liquid_state liquid_state_init(const struct network *network,
                                              const struct held_liquid *held)
@@ -50,13 +75,15 @@ static struct liquid_state liquid_state_init(const struct network *network,
     order_throats(network, NULL, state.widest);
     for (int k = 0; k < n; k++)
         state.rank[state.widest[k]] = k;
+    bool *usable = find_usable(*network, held->open_walls);
     for (int t = 0; t < n; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        state.capacity[t] = throat_volume(network, t);
+        if (usable[t]) state.capacity[t] = throat_volume(network, t);
         state.liquid[t] = held->saturation[t] * state.capacity[t];
         for (int end = 0; end < 2 && held->saturation[t] == 0; end++)
             state.gas[network->throat_nodes[t][end]] = true;
     }
+    free(usable);
     return state;
 }
 

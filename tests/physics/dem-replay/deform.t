@@ -353,4 +353,26 @@ with scratch_paths() as at:
         ok(status == 0 and all(np.allclose(moved[e], (1 - shrink) ** power * began[e][:], rtol=1e-7, atol=0)
                                for e, power in lengths.items() if e in began),
            f"{title} that shrink: so do their pores", moved if status else "")
+
+    # Throats that have closed in the network anew: dry shuts them, so what they would hold goes to others.
+    scene = sets("throat_volume=void")
+    dries = sets('imposed_empty=["-x","+x","-y","+y","-z"]')
+    run("pack", "-q", *sets("method=soft_spheres", "count=150", "sizes.distribution=two_mode", "sizes.second_radius=1e-7",
+                            "sizes.second_share=0.6"), "-o", at("packing"))
+    with h5py.File(at("packing"), "r+") as packing:
+        packing["particles/radius"][...] *= 1.12
+        place = packing["particles/position"][:]
+    run("tessellate", *scene, at("packing"), "-o", at("network"))
+    run("dry", "-q", *dries, *sets("stop_saturation=0.6"), at("network"), "-o", at("drying"))
+    run("dem-replay", "-q", *sets("cycles=1", "engine=explicit"), "-o", at("response"),
+        input=run("force-protocol", *sets("steps=2"), at("drying")))
+    lay(0.05 * 2e-7 * np.random.default_rng(1).uniform(-1, 1, place.shape))
+    packing = run("deform", *sets("write=packing"), at("drying"), at("response"))
+    run("tessellate", *scene, "-o", at("anew"), input=packing)
+    run("deform", at("drying"), at("response"), at("anew"), "-o", at("carried"))
+    run("dry", "-q", *dries, at("carried"), "-o", at("dried"))
+    with h5py.File(at("carried")) as carried, h5py.File(at("dried")) as after:
+        held = carried["throats/saturation"][:] * carried["throats/volume"][:]
+        shut = (carried["throats/kind"][:] == 0) & (after["throats/kind"][:] != 0)
+        ok(shut.any() and not held[shut].any(), "no liquid in throats that have closed", (shut.sum(), held[shut].sum() / held.sum()))
 done()
