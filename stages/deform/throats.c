@@ -13,7 +13,7 @@
 // (1e-9 of the largest): the network does not say where they come from. Trap: the flow
 // conductances and hydraulic radii are not compared, only those of diffusion.
 //
-// If no grain has moved volumes and conductances stay, digit by digit.
+// If no grain has moved or shrunk, volumes and conductances stay, digit by digit.
 #include "throats.h"
 
 #include "basics/memory.h"
@@ -135,8 +135,11 @@ static double void_of(const struct packing *packing)
 
 static bool nothing_moved(const struct network *before, const struct network *after)
 {
+    const size_t n = (size_t)before->packing.n_particle;
     return !memcmp(before->packing.position, after->packing.position,
-                   (size_t)before->packing.n_particle * sizeof(struct vector));
+                   n * sizeof *before->packing.position) &&
+           !memcmp(before->packing.radius, after->packing.radius,
+                   n * sizeof *before->packing.radius);
 }
 
 // Whether the volumes of NETWORK are what find_void_volumes gives.

@@ -353,6 +353,12 @@ with scratch_paths() as at:
         ok(status == 0 and all(np.allclose(moved[e], (1 - shrink) ** power * began[e][:], rtol=1e-7, atol=0)
                                for e, power in lengths.items() if e in began),
            f"{title} that shrink: so do their pores", moved if status else "")
+        if "throats/volume" in began:
+            lay(0) # grains that are held in their places
+            _, moved = deform("network", *sets("on_change=keep"))
+            void = moved["throats/volume"][:].sum() - began["throats/volume"][:].sum()
+            lost = 4 * np.pi / 3 * (radius**3 - moved["particles/radius"][:]**3).sum()
+            ok(abs(void / lost - 1) < 1e-9, f"{title} that shrink in their places: the void grows by what they lose", void / lost)
 
     # Throats that have closed in the network anew: dry shuts them, so what they would hold goes to others.
     scene = sets("throat_volume=void")
