@@ -177,8 +177,6 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
     const int n = network->packing.n_particle;
     struct force_steps steps = {.loads = loads,
                                 .liquid = liquid_loads_begin(network, record, law),
-                                .checks_all = law->rule != SUCTION_UNIFORM ||
-                                              loads->patches[LOAD_CONTACT_LINE].n > 0,
                                 .load = load_values_init(loads, network->n_throat),
                                 .pull = NEW_ARRAY(double, loads->rings.n),
                                 .former_pull = NEW_ARRAY(double, loads->rings.n),
@@ -186,6 +184,9 @@ struct force_steps force_steps_begin(const struct throat_loads *loads,
                                 .changed = NEW_ARRAY(int, n),
                                 .former = NEW_ARRAY(struct vector, n),
                                 .listed = NEW_ARRAY(bool, n)};
+    const bool rings_weigh = steps.liquid.ring_part && law->weight > 0;
+    steps.checks_all = law->rule != SUCTION_UNIFORM || rings_weigh ||
+                       loads->patches[LOAD_CONTACT_LINE].n > 0;
     list_grains(&steps, network->n_throat);
     for (int t = 0; t < network->n_throat; t++)
         set_loads(&steps.liquid, t, &steps.load);

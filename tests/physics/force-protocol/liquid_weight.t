@@ -110,6 +110,11 @@ with scratch_paths() as at:
            f"{rings} rings, {law}, full to {start}: they weigh as well",
            (wrong, weight, history["ring_saturation"][:].max()))
 
+    # Times are chosen by that weight as well.
+    dry("ringed", "gravity=4e4", "rings=isolated")
+    changes = {bound: forces(f"largest_change={bound}")["summary"].attrs["largest_change"] for bound in (0.05, 0.01)}
+    ok(all(change < bound for bound, change in changes.items()), "no change is larger than asked for where rings weigh", changes)
+
     # ---- Archimedes ---------------------------------------------------------------------
     # The cells of a cubic lattice end in throats on all sides: still liquid presses on a full
     # one exactly as on a block of its volume.
