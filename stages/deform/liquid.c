@@ -8,6 +8,9 @@
 // those that empty. A priority queue of ranks in the order of entry
 // (network/entry_order.h) has the throats that can be filled or emptied next.
 //
+// What rounding alone changes stays where it is: else it would wet empty throats, and
+// join clusters.
+//
 // Throats that have closed hold nothing, nor do those that these shut in, as in dry:
 // their liquid is surplus of their cluster.
 //
@@ -22,6 +25,7 @@
 #include "network/enclosed.h"
 #include "network/entry_order.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 struct liquid_state {
@@ -30,6 +34,7 @@ struct liquid_state {
     struct incidence incidence;
     double *capacity; // (n_throat) m3; 0 where no throat takes part
     double *liquid;   // (n_throat) m3, now
+    double rounding;  // m3 of a throat, on average: less has not changed
     bool *gas;        // (n_node) a throat there is empty
     int *widest;      // (n_throat) throats in the order of entry
     int *rank;        // (n_throat) where each is in it
@@ -84,6 +89,10 @@ static struct liquid_state liquid_state_init(const struct network *network,
             state.gas[network->throat_nodes[t][end]] = true;
     }
     free(usable);
+    struct compensated sum = {0};
+    for (int t = 0; t < n; t++)
+        compensated_add(&sum, state.capacity[t]);
+    state.rounding = n > 0 ? 1e-12 * compensated_value(sum) / n : 0;
     return state;
 }
 
@@ -237,6 +246,7 @@ static double redistribute_cluster(struct liquid_state *state, int cluster,
         compensated_add(&surplus, state->held->liquid[t] -
                                       state->held->saturation[t] * state->capacity[t]);
     }
+    if (fabs(compensated_value(surplus)) <= count * state->rounding) return 0;
     if (compensated_value(surplus) > 0) {
         for (int k = 0; k < count; k++)
             queue_capacity(state, member[k]);

@@ -19,7 +19,7 @@ struct held_liquid {
 // saturations. A surplus then fills throats at its menisci, the narrowest first, as the
 // suction there is largest; a shortage empties them, the widest first. Among equals the
 // lowest index comes first. Returns the volume (m3) that finds no room and leaves the
-// network. If liquid is saturation times volume, saturations stay, bit for bit; else
-// the sum of the liquid is kept to rounding.
+// network. If liquid is saturation times volume, but for 1e-12 of a mean throat,
+// saturations stay, bit for bit; else the sum of the liquid is kept to rounding.
 double redistribute_liquid(const struct network *network,
                            const struct held_liquid *held, double *saturation);
