@@ -101,6 +101,33 @@ static struct artifact *open_network(const char *path)
     return input;
 }
 
+static int compare_numbers(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// Puts grains that were tessellated in another repetition of the box than that where
+// the response has them into the one in which they move like most, from WAS.
+static void move_together(const struct vector *was, int axis, struct packing *packing)
+{
+    const int n = packing->n_particle;
+    const double edge =
+        component(packing->upper, axis) - component(packing->lower, axis);
+    double *moved = NEW_ARRAY(double, n);
+    for (int i = 0; i < n; i++)
+        moved[i] = component(packing->position[i], axis) - component(was[i], axis);
+    double *sorted = duplicate(moved, (size_t)n, sizeof *moved);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    for (int i = 0; i < n; i++) {
+        const double boxes = round((moved[i] - sorted[n / 2]) / edge);
+        set_component(&packing->position[i], axis,
+                      component(packing->position[i], axis) - boxes * edge);
+    }
+    free(sorted);
+    free(moved);
+}
+
 // Where the grains were at the last snapshot of RESPONSE, in place of their places:
 // displacements are from where the response itself began. If they have shrunk, also
 // their radii then. Exits 65: other grains, by their number, or no snapshot.
@@ -118,8 +145,13 @@ static void take_places(const struct artifact *response, struct packing *packing
         die(STATUS_BAD_DATA, "%s: /snapshots/displacement: must have at least one row",
             input_name(response->path));
     const struct vector *last = displacement + (size_t)(n_snapshot - 1) * (size_t)n;
+    struct vector *was =
+        duplicate(packing->position, (size_t)n, sizeof *packing->position);
     for (int i = 0; i < n; i++)
         packing->position[i] = add(began.position[i], last[i]);
+    for (int axis = 0; axis < 3 && n > 0; axis++)
+        if (packing->periodic[axis]) move_together(was, axis, packing);
+    free(was);
     free(displacement);
     if (artifact_has_dataset(response, "/snapshots/shrinkage")) {
         double *shrinkage = artifact_get(response, "/snapshots/shrinkage", NULL);
@@ -322,9 +354,18 @@ static void check_same_grains(const struct scene *scene, const struct network *r
     static const double same = 1e-9; // of a radius: tessellate rounds no more
     const struct packing *packing = &scene->after.packing;
     bool fits = renewed->packing.n_particle == packing->n_particle;
-    for (int i = 0; i < packing->n_particle && fits; i++)
-        fits = distance(renewed->packing.position[i], packing->position[i]) <=
-               same * packing->radius[i];
+    for (int i = 0; i < packing->n_particle && fits; i++) {
+        struct vector off =
+            subtract(renewed->packing.position[i], packing->position[i]);
+        for (int axis = 0; axis < 3; axis++) { // tessellate puts grains into the box
+            const double edge =
+                component(packing->upper, axis) - component(packing->lower, axis);
+            const double boxes =
+                packing->periodic[axis] ? round(component(off, axis) / edge) : 0;
+            set_component(&off, axis, component(off, axis) - boxes * edge);
+        }
+        fits = norm(off) <= same * packing->radius[i];
+    }
     if (!fits)
         die(STATUS_BAD_DATA,
             "%s: /particles/position: is not where the response has the grains now",
