@@ -332,11 +332,10 @@ def count_first(said, axes, seeds, packings, path, most):
         refuse(65, f"{path}: {runs} runs ({shape}), more than {most}: fewer values, or MOST_RUNS={runs}")
 
 
-def table_runs(said, path, replaced, scene, made):
+def table_runs(said, path, seeds, keys, scene, made):
     """Axes, points and runs of a table."""
     table = located(said["runs"], path)
     axes, points, rows = table_points(table, lambda key: key.endswith(".seed"))
-    seeds, keys = seeds_of(said, replaced, path)
     runs = []
     for number, (point, values, row) in enumerate(rows, 1):
         sets = {key: value for key, value in row.items() if key not in SPECIAL}
@@ -352,13 +351,12 @@ def table_runs(said, path, replaced, scene, made):
     return axes, points, runs
 
 
-def axes_runs(said, path, replaced, scene, made, most):
+def axes_runs(said, path, seeds, keys, scene, made, most):
     """Axes, points and runs of crossed axes."""
     axes = [read_axis(axis, f"{path}: axes[{k}]") for k, axis in enumerate(said.get("axes", []))]
     for k, axis in enumerate(axes):
         if axis.name in [a.name for a in axes[:k]]:
             refuse(65, f"{path}: axes[{k}]: {axis.name}: another axis has this name")
-    seeds, keys = seeds_of(said, replaced, path)
     packings = [located(each, path) for each in said.get("packings", [])] or [said.get("import") and located(said["import"], path)]
     count_first(said, axes, seeds, packings, path, most)
     points, runs = crossed(said, axes), []
@@ -391,14 +389,15 @@ def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
     elif own:
         own = located(own, path)
     measures = [read_measure(each, f"{path}: measure[{k}]") for k, each in enumerate(said.get("measure", CRACKS))]
+    values, given = seeds_of(said, seeds, path)
     # One seed tells no runs apart: then it may be of what no stage of the study draws.
     made = {stages.MADE[kind][0] for kind in kinds_wanted(Study(path, "", said, [], [], [], measures))} \
-        if len(seeds_of(said, seeds, path)[0]) > 1 else set(stages.STAGES)
+        if len(values) > 1 else set(stages.STAGES)
     keys = []
     if "runs" in said:
-        axes, points, runs = table_runs(said, path, seeds, own, made)
+        axes, points, runs = table_runs(said, path, values, given, own, made)
     else:
-        axes, points, runs, keys = axes_runs(said, path, seeds, own, made, most)
+        axes, points, runs, keys = axes_runs(said, path, values, given, own, made, most)
     if len(runs) > most:
         refuse(65, f"{path}: {len(runs)} runs, more than {most}: fewer values, or MOST_RUNS={len(runs)}")
     for key in keys:

@@ -252,7 +252,7 @@ static bool *find_core(const struct run *run, const uint8_t *intact)
     return core;
 }
 
-// Joined are only grains of cores, so a set of others has one grain and is left out.
+// Only grains of cores are joined. Any other grain is a set by itself, and no island.
 int count_islands(const struct columns *columns, const struct run *run,
                   const uint8_t *intact)
 {

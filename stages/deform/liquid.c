@@ -42,25 +42,13 @@ struct liquid_state {
     struct rank_queue queue;
 };
 
-// (n_throat) Which throats dry will let hold liquid. The caller frees it.
-static bool *find_usable(struct network network, unsigned open_walls)
+// (n_throat) The kinds that throats will have in dry. The caller frees it.
+static uint8_t *kinds_in_dry(struct network network, unsigned open_walls)
 {
-    const int n = network.n_throat;
-    uint8_t *kind =
-        duplicate(network.throat_kind, (size_t)n, sizeof *network.throat_kind);
-    network.throat_kind = kind;
-    if (shut_closed_throats(&network)) {
-        bool *open = NEW_ARRAY(bool, network.n_node);
-        for (int i = 0; i < network.n_node; i++)
-            open[i] = network.node_walls[i] & open_walls;
-        empty_enclosed_throats(&network, open);
-        free(open);
-    }
-    bool *usable = NEW_ARRAY(bool, n);
-    for (int t = 0; t < n; t++)
-        usable[t] = kind[t] == THROAT_NETWORK;
-    free(kind);
-    return usable;
+    network.throat_kind = duplicate(network.throat_kind, (size_t)network.n_throat,
+                                    sizeof *network.throat_kind);
+    if (shut_closed_throats(&network)) empty_throats_cut_off(&network, open_walls);
+    return network.throat_kind;
 }
 
 static struct liquid_state liquid_state_init(const struct network *network,
@@ -80,15 +68,15 @@ static struct liquid_state liquid_state_init(const struct network *network,
     order_throats(network, NULL, state.widest);
     for (int k = 0; k < n; k++)
         state.rank[state.widest[k]] = k;
-    bool *usable = find_usable(*network, held->open_walls);
+    uint8_t *kind = kinds_in_dry(*network, held->open_walls);
     for (int t = 0; t < n; t++) {
         if (network->throat_kind[t] != THROAT_NETWORK) continue;
-        if (usable[t]) state.capacity[t] = throat_volume(network, t);
+        if (kind[t] == THROAT_NETWORK) state.capacity[t] = throat_volume(network, t);
         state.liquid[t] = held->saturation[t] * state.capacity[t];
         for (int end = 0; end < 2 && held->saturation[t] == 0; end++)
             state.gas[network->throat_nodes[t][end]] = true;
     }
-    free(usable);
+    free(kind);
     struct compensated sum = {0};
     for (int t = 0; t < n; t++)
         compensated_add(&sum, state.capacity[t]);

@@ -27,6 +27,7 @@
 #include "artifacts/write_network.h"
 #include "basics/compensated.h"
 #include "basics/memory.h"
+#include "basics/sorted.h"
 #include "basics/status.h"
 #include "geometry/neighbours.h"
 #include "liquid.h"
@@ -101,14 +102,9 @@ static struct artifact *open_network(const char *path)
     return input;
 }
 
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// Puts grains that were tessellated in another repetition of the box than that where
-// the response has them into the one in which they move like most, from WAS.
+// A response follows grains across the sides of a box that repeats, and tessellate puts
+// them back. Shifts each grain by whole boxes along AXIS, so that it has moved from WAS
+// like most others.
 static void move_together(const struct vector *was, int axis, struct packing *packing)
 {
     const int n = packing->n_particle;
@@ -118,7 +114,7 @@ static void move_together(const struct vector *was, int axis, struct packing *pa
     for (int i = 0; i < n; i++)
         moved[i] = component(packing->position[i], axis) - component(was[i], axis);
     double *sorted = duplicate(moved, (size_t)n, sizeof *moved);
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    qsort(sorted, (size_t)n, sizeof *sorted, rising_doubles);
     for (int i = 0; i < n; i++) {
         const double boxes = round((moved[i] - sorted[n / 2]) / edge);
         set_component(&packing->position[i], axis,
@@ -355,16 +351,9 @@ static void check_same_grains(const struct scene *scene, const struct network *r
     const struct packing *packing = &scene->after.packing;
     bool fits = renewed->packing.n_particle == packing->n_particle;
     for (int i = 0; i < packing->n_particle && fits; i++) {
-        struct vector off =
+        const struct vector off =
             subtract(renewed->packing.position[i], packing->position[i]);
-        for (int axis = 0; axis < 3; axis++) { // tessellate puts grains into the box
-            const double edge =
-                component(packing->upper, axis) - component(packing->lower, axis);
-            const double boxes =
-                packing->periodic[axis] ? round(component(off, axis) / edge) : 0;
-            set_component(&off, axis, component(off, axis) - boxes * edge);
-        }
-        fits = norm(off) <= same * packing->radius[i];
+        fits = norm(shortest_image(packing, off)) <= same * packing->radius[i];
     }
     if (!fits)
         die(STATUS_BAD_DATA,

@@ -77,16 +77,6 @@ static unsigned empty_walls(const struct network *network)
     return empty & ~holding;
 }
 
-// Throats that these cut off from the open walls are empty as well, as in dry.
-static void empty_enclosed(struct network *network, unsigned open_walls)
-{
-    bool *open = NEW_ARRAY(bool, network->n_node);
-    for (int i = 0; i < network->n_node; i++)
-        open[i] = network->node_walls[i] & open_walls;
-    empty_enclosed_throats(network, open);
-    free(open);
-}
-
 static void map_saturations(const struct middles *old, const struct network *renewed,
                             const double *saturation, double *to)
 {
@@ -133,7 +123,7 @@ struct mapped_liquid map_liquid(const struct network *before,
     const unsigned empty = empty_walls(before);
     if (empty) {
         impose_empty_throats(renewed, empty);
-        empty_enclosed(renewed, open_walls);
+        empty_throats_cut_off(renewed, open_walls);
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);

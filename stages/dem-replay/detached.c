@@ -20,7 +20,7 @@ void count_detached(struct run *run, const bool *have_left, int first)
         if (!had_bond[i])
             response->n_unbonded++;
         else if (response->n_detached++ == 0)
-            response->first_detached = had_bond[first] ? first : i;
+            response->first_detached = first >= 0 && had_bond[first] ? first : i;
     }
     free(had_bond);
 }

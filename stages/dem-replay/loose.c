@@ -45,7 +45,7 @@ void find_loose(struct loose_grains *loose, const struct packing *packing,
     loose->n_loose = 0;
     for (int i = 0; i < packing->n_particle; i++) {
         loose->is_loose[i] = !fragments->is_held[fragments->of[i]];
-        if (loose->is_loose[i] && loose->n_loose++ == 0) loose->first_one = i;
+        loose->n_loose += loose->is_loose[i];
     }
 }
 

@@ -14,8 +14,8 @@
 
 struct loose_grains {
     struct fragments fragments;
-    bool *is_loose;         // (n_particle) 0 or 1
-    int n_loose, first_one; // how many, and the lowest of them
+    bool *is_loose; // (n_particle) 0 or 1
+    int n_loose;
 };
 
 struct loose_grains loose_init(int n_particle);

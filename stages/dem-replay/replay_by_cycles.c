@@ -326,7 +326,7 @@ static void end(struct run *run)
     if (state->dem) note_time_step(run);
     if (state->dem && unloads(run))
         find_loose(&state->loose, run->packing, run->settings->held, state->dem);
-    count_detached(run, state->loose.is_loose, state->loose.first_one);
+    count_detached(run, state->loose.is_loose, -1);
     loose_free(&state->loose);
     drainage_free(&state->drainage);
     dem_free(state->dem);

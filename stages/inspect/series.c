@@ -205,22 +205,19 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
                     cracks->mode_before[k]);
 }
 
-// The contacts as lines between grains that lie at MOVED, which this packing becomes:
-// across a side that repeats both ends are the first grain.
-static void draw_contacts(struct packing *packing, struct vector *moved,
+// The contacts as lines between grains that lie at MOVED: across a side that repeats
+// both ends are the first grain.
+static void draw_contacts(const struct packing *packing, const struct vector *moved,
                           const struct crack_view *view, int32_t (*line)[2])
 {
-    struct vector *before = packing->position;
-    packing->position = moved;
     for (int c = 0; c < view->n_contact; c++) {
         const int32_t *pair = view->contact[c];
         const struct vector apart = subtract(moved[pair[1]], moved[pair[0]]);
-        const struct vector nearest = nearest_image(packing, pair[0], pair[1]);
+        const struct vector nearest = shortest_image(packing, apart);
         const bool across = norm(subtract(nearest, apart)) > 0;
         line[c][0] = pair[0];
         line[c][1] = pair[across ? 0 : 1];
     }
-    packing->position = before;
 }
 
 // Radii of grains that have shrunk by STRAIN; NULL: not at all.

@@ -13,9 +13,8 @@
 //
 //     0     bonds                    of the packing
 //     1-6   cracks of the response   all, by mode, %; saturation at first and half
-//     7, 8  the course (course.h)    saturation at half the first rate; s until its
-//     end,
-//                                    where times are no steps
+//     7, 8  the course (course.h)    saturation at half the first rate; s until its end
+//                                    (if times are not numbers of steps)
 //     9-11  crackstats of the run    fragments: count, largest; shrinkage, %
 //
 // A number that a run does not have is NAN: it is left out of means, and a column that

@@ -247,8 +247,8 @@ static void estimate(const struct simulate_parameters *parameters, struct scene 
                    &(struct body_size){.grains = scene->setup.packing->n_particle});
 }
 
-// Bonds that bond.kind does not make are no longer the packing's: nothing after this
-// sees them. Who wants the grains for the stages after this may count on them.
+// Without bond.kind nothing after this sees the bonds of the packing. A user who goes
+// on with the packing written may count on them, so this is said.
 static void drop_bonds(const struct simulate_parameters *parameters,
                        const struct invocation *invocation, struct packing *packing)
 {

@@ -21,7 +21,7 @@ struct film_link {
 // It owns its arrays. Only sites that films join to a cluster are there: clusters
 // first, then nodes, those with few films before others, and of these in the order of
 // CURVE. So rows of the matrix have one length for long, and sites beside each other
-// are near in memory: sweeps and products take two thirds of the time.
+// are near in memory, which makes sweeps and products faster.
 struct film_network {
     int n_site;
     int *place;                       // (n_site) a cluster, or n_throat + node

@@ -29,11 +29,10 @@ int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count)
 // bsearch.
 int compare_pairs(const void *a, const void *b);
 
-// From grain I to grain J, to its nearest image where the box repeats, m. Exactly
-// opposite from J to I, and right wherever the positions lie.
-static inline struct vector nearest_image(const struct packing *packing, int i, int j)
+// APART, m, less whole boxes along the axes that repeat: the way to the nearest image.
+static inline struct vector shortest_image(const struct packing *packing,
+                                           struct vector apart)
 {
-    struct vector apart = subtract(packing->position[j], packing->position[i]);
     for (int axis = 0; axis < 3; axis++) {
         if (!packing->periodic[axis]) continue;
         const double edge =
@@ -43,4 +42,12 @@ static inline struct vector nearest_image(const struct packing *packing, int i, 
             set_component(&apart, axis, along - edge * round(along / edge));
     }
     return apart;
+}
+
+// From grain I to grain J, to its nearest image where the box repeats, m. Exactly
+// opposite from J to I, and right wherever the positions lie.
+static inline struct vector nearest_image(const struct packing *packing, int i, int j)
+{
+    return shortest_image(packing,
+                          subtract(packing->position[j], packing->position[i]));
 }

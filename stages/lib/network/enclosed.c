@@ -50,3 +50,13 @@ int empty_enclosed_throats(struct network *network, const bool *open)
     free(reached);
     return enclosed;
 }
+
+int empty_throats_cut_off(struct network *network, unsigned open_walls)
+{
+    bool *open = NEW_ARRAY(bool, network->n_node);
+    for (int i = 0; i < network->n_node; i++)
+        open[i] = network->node_walls[i] & open_walls;
+    const int enclosed = empty_enclosed_throats(network, open);
+    free(open);
+    return enclosed;
+}
