@@ -130,6 +130,7 @@ static bool is_settled(const struct making *making, const struct dem *dem,
 struct settling {
     double done;   // between 0 and 1, for the progress bar
     double landed; // 1: grains have
+    double adapts; // the cycle from which the step is due to be adapted again
 };
 static const double LANDED = 0.01;
 enum { SETTLING_NUMBERS = sizeof(struct settling) / sizeof(double) };
@@ -140,7 +141,19 @@ static double fall_speed(const struct making *making, double height)
     return sqrt(2 * making->how->gravity * height);
 }
 
-// Adapts the step, and ends the fall from HEIGHT when it is over.
+// Adapts the step. This takes as long as 40 cycles, and contacts of landed grains
+// hardly change: there it is due again when the run is longer by SHARE.
+static void adapt(const struct making *making, struct dem *dem, double height,
+                  struct settling *settling)
+{
+    const double cycle = (double)dem_cycle(dem), often = 400, share = 0.05;
+    const bool falls = settling->landed == 0;
+    even_steps(dem, falls);
+    adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
+    settling->adapts = cycle + fmax(often, falls ? 0 : share * cycle);
+}
+
+// Ends the fall from HEIGHT when it is over, and adapts the step when it is due.
 static void follow(const struct making *making, struct dem *dem, double height,
                    struct settling *settling)
 {
@@ -150,11 +163,11 @@ static void follow(const struct making *making, struct dem *dem, double height,
     const bool lands = dem_time(dem) > 2 * fall_time &&
                        dem_unbalanced_ratio(dem) < LANDED &&
                        largest_speed(making, dem) < slow;
-    const bool falls = settling->landed == 0 && !lands;
-    if (!falls && settling->landed == 0) land_grains(making, dem);
-    even_steps(dem, falls);
-    settling->landed = !falls;
-    adapt_step(dem, falls, falls ? fall_speed(making, height) : 0);
+    const bool ends = settling->landed == 0 && lands;
+    if (ends) land_grains(making, dem);
+    if (ends) settling->landed = 1;
+    if (ends || (double)dem_cycle(dem) >= settling->adapts)
+        adapt(making, dem, height, settling);
 }
 
 static void show_progress(const struct making *making, const struct dem *dem,

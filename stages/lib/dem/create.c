@@ -181,6 +181,7 @@ static void new_grains(struct dem *dem, int n)
     dem->first_group = NEW_ARRAY(int, n);
     dem->last_group = NEW_ARRAY(int, n);
     dem->place_at_search = NEW_ARRAY(struct vector, n);
+    dem->half_skin = NEW_ARRAY(double, n);
     if (dem->balance_energy)
         dem->grain_ledger = allocate((size_t)n, sizeof *dem->grain_ledger);
 }

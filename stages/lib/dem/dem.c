@@ -65,6 +65,7 @@ void dem_free(struct dem *dem)
                            dem->first_row,
                            dem->sum,
                            dem->place_at_search,
+                           dem->half_skin,
                            dem->grain_ledger,
                            dem->crack};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
@@ -142,6 +143,8 @@ static void merge_max_speed(struct outcome *outcome, struct max_speed speed)
 {
     if (speed.square > outcome->max_speed.square)
         outcome->max_speed.square = speed.square;
+    if (speed.shares > outcome->max_speed.shares)
+        outcome->max_speed.shares = speed.shares;
     outcome->max_speed.valid = outcome->max_speed.valid && speed.valid;
 }
 
@@ -149,7 +152,7 @@ static void merge_max_speed(struct outcome *outcome, struct max_speed speed)
 static struct outcome sweep_chunk(struct dem *dem, int begin, int end)
 {
     enum { BLOCK = 32 }; // groups, few enough for what they touch to stay cached
-    struct outcome outcome = {0, {0, true}};
+    struct outcome outcome = {.max_speed.valid = true};
     int grain = // the first that groups before do not finish
         begin > 0 ? first_not_below(dem->last_group, dem->n_particle, begin) : 0;
     for (int block = begin; block < end; block += BLOCK) {
@@ -185,7 +188,7 @@ static struct outcome sweep_chunks(struct dem *dem, struct team *team, int me)
     const int n = dem->pairs.n_group, share = groups_in_chunk(dem);
     const int n_chunk = dem->n_chunk,
               shared_in_chunk = (dem->n_shared + n_chunk - 1) / n_chunk;
-    struct outcome mine = {0, {0, true}};
+    struct outcome mine = {.max_speed.valid = true};
     if (walls_are_shared(dem)) touch_walls_together(dem, team, me);
     if (n == 0 && me == 0) mine.max_speed = move_grains(dem, 0, dem->n_particle);
     for (int t = me; t < n_chunk; t += team->barrier.size) {
@@ -292,9 +295,9 @@ static void end_cycle(struct dem *dem, struct outcome outcome,
     if (dem->liquid) publish_bridge_counts(dem);
     add_up_walls(dem);
     move_walls(dem);
-    const double fastest = fmax(sqrt(outcome.max_speed.square), fastest_wall(dem));
-    dem->last_travel = dem->time_step * fastest;
-    dem->travelled += dem->last_travel;
+    const double dt = dem->time_step, wall = fastest_wall(dem);
+    dem->last_travel = dt * fmax(sqrt(outcome.max_speed.square), wall);
+    dem->used += dt * fmax(sqrt(outcome.max_speed.shares), wall / (0.5 * dem->skin));
     if (!outcome.max_speed.valid) {
         reactivate_pairs(dem);
         control->status = report_divergence(dem, control->reason);

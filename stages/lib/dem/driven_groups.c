@@ -162,7 +162,9 @@ struct max_speed move_driven_grain(struct dem *dem, int i, const struct motion *
     memcpy(spin_of(dem, i), &spin, sizeof spin);
     memcpy(place->displacement, &u, sizeof u);
     if (half > 0) dem->grain_ledger[i][0] += half * group_power(dem, i, load);
-    return (struct max_speed){.square = square, .valid = true};
+    const double half_skin = dem->half_skin[i];
+    return (struct max_speed){
+        .square = square, .shares = square / (half_skin * half_skin), .valid = true};
 }
 
 // ---- from outside -------------------------------------------------------------------

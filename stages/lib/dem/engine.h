@@ -19,10 +19,10 @@
 // is their index in the packing, `index` the inverse.
 //
 // What holds between two calls: all rows of `sum` are 0; pairs are sorted by first,
-// then second grain, in the engine's numbers; a pair that may touch before `travelled`
-// and `closed_in` have used up half the skin is in the list; no pair is inactive but
-// within a run; `place` is one step ahead of the forces in pairs and walls
-// (places_ahead), `motion` half a step behind `place`.
+// then second grain, in the engine's numbers; a pair that may touch before a grain has
+// moved by half of its skin is in the list; no pair is inactive but within a run;
+// `place` is one step ahead of the forces in pairs and walls (places_ahead), `motion`
+// half a step behind `place`.
 //
 // Who writes what while threads run: a thread writes its share of the wall pairs, the
 // groups of its chunks, rows of `sum` that no other thread has, and the grains that it
@@ -277,13 +277,17 @@ struct dem {
     size_t sum_room;  // doubles that have room in it
     bool keeps_loads; // of all pairs, in this cycle
 
-    double skin; // pairs are listed whose surfaces are nearer; tuned (neighbours.c)
+    // The search for pairs [neighbours.c]; skins are tuned.
+    double skin;       // of a grain at rest, the least
+    double horizon;    // cycles for which skins of moving grains are deeper
+    double mean_skin;  // of all grains
+    double *half_skin; // (n_particle) a grain may move so far before the next search
+    double used;       // no grain has moved by a larger share of it since the last
     struct vector *place_at_search; // (n_particle) displacement when pairs were sought
-    double travelled;               // no grain has moved further since
-    double last_travel;             // nor further than this in the last cycle
-    double closed_in;               // of this, by rescaling and by walls that move
-    int64_t search_cycle;           // when that was
-    int searches_in_order;          // since grains were last renumbered
+    double last_travel;             // no grain has moved further in the last cycle
+    double closed_in;      // what rescaling and shrinkage brought surfaces nearer since
+    int64_t search_cycle;  // when pairs were sought
+    int searches_in_order; // since grains were last renumbered
 
     bool balance_energy;
     struct dem_energy energy_ledger; // the parts that only grow, of pairs that are gone
@@ -317,7 +321,9 @@ void find_pairs(struct dem *dem);
 // Those that were there before keep their history [pairs.c]. Both arrays have N_PAIR
 // rows; first < second in each. BOND is -1 for none.
 void take_pairs(struct dem *dem, int n_pair, int32_t (*particle)[2], int32_t *bond);
-// Whether pairs must be found again, as a grain may have moved further than half the
+// Counts that surfaces came nearer by DISTANCE each, of which no displacement tells.
+void count_approach(struct dem *dem, double distance);
+// Whether pairs must be found again, as a grain may have moved further than half its
 // skin. Renewing finds and takes them, and numbers grains anew from time to time.
 bool pairs_are_due(struct dem *dem);
 void renew_pairs(struct dem *dem);
@@ -471,10 +477,11 @@ struct wall_geometry {
 struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back);
 
 // The largest squared speed, or an upper bound with that of a largest grain's surface
-// from rotation included. VALID is false when a grain, or its surface, would have moved
-// too far to be true; such a grain stayed where it was.
+// from rotation included. SHARES is the largest square of a speed over half_skin. VALID
+// is false when a grain, or its surface, would have moved too far to be true; such a
+// grain stayed where it was.
 struct max_speed {
-    double square;
+    double square, shares;
     bool valid;
 };
 

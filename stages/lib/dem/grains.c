@@ -154,7 +154,8 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
     struct place *const place = dem->place;
     const bool balance = dem->balance_energy, any_driven = dem->group_of;
     const double4 zero = {0};
-    double largest = 0;
+    const double *const half_skin = dem->half_skin;
+    double largest = 0, shares = 0;
     bool valid = true;
     for (int k = begin; k < end; k++) {
         const int i = shared ? dem->shared_grain[k] : k;
@@ -164,6 +165,7 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
         if (any_driven && dem->group_of[i]) {
             const struct max_speed speed = drive(dem, i, &sum);
             largest = speed.square > largest ? speed.square : largest;
+            shares = speed.shares > shares ? speed.shares : shares;
             valid = valid && speed.valid;
             continue;
         }
@@ -186,12 +188,14 @@ SIMD_INLINE struct max_speed move(struct dem *dem, int begin, int end, bool shar
             continue;
         }
         largest = square > largest ? square : largest;
+        const double share_square = sum_of(v * v) / (half_skin[i] * half_skin[i]);
+        shares = share_square > shares ? share_square : shares;
         *velocity = v;
         if (turns) *spin = w;
         *(double4 *)&place[i] += dt * v; // the radius by 0
         if (balance && mobile[0] > 0) update_grain_ledger(dem, i, &sum, net, v, w);
     }
-    return (struct max_speed){.square = largest, .valid = valid};
+    return (struct max_speed){.square = largest, .shares = shares, .valid = valid};
 }
 
 struct max_speed move_grains(struct dem *dem, int begin, int end)

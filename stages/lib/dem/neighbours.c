@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The search for pairs that may touch before the next search: those whose surfaces are
-// nearer than `skin` (Verlet's list). Bonded pairs stay in the list at any distance.
+// nearer than the mean of their skins (Verlet's list). Bonded pairs stay in the list at
+// any distance.
 //
-// A search is due when a grain may have moved half the skin. How deep the skin should
-// be: with a rate of approach of two grains per cycle, searches come every skin / rate
-// cycles, and a deeper skin holds more pairs to sweep. Per grain and cycle
-//     cost = 4 skin + 75 rate / skin,  least at  skin = sqrt(75/4 rate).
-// The rate is that since the last search. No clock is read, so every run does the same.
+// A search is due when a grain may have moved by half of its skin. Most grains of a bed
+// that comes to rest hardly move, and some topple, so each has a skin of its own: with
+// the speed v when pairs are sought, in radii a cycle,
+//     skin_i = s + 2 v_i T,
+// T the cycles until the next search, and s for what speeds do not foretell. Grains
+// moved by at most r/2 a cycle more than that since the last search, so s = r T. Deeper
+// skins hold more pairs to sweep. Per grain and cycle
+//     cost = 4 mean skin + 75 / T,  least at  T = sqrt(75/4 / (r + 2 mean v)).
+// No clock is read, so every run does the same.
 #include "dem/engine.h"
 
 #include "basics/memory.h"
@@ -39,7 +44,7 @@ static int32_t (*find_near_pairs(const struct dem *dem, int *count))[2]
     double *reach = NEW_ARRAY(double, dem->n_particle);
     for (int i = 0; i < dem->n_particle; i++) {
         position[i] = position_now(dem, i);
-        reach[i] = dem->place[i].radius + 0.5 * (dem->skin + bridge_cutoff(dem));
+        reach[i] = dem->place[i].radius + dem->half_skin[i] + 0.5 * bridge_cutoff(dem);
     }
     struct spheres spheres = {.count = dem->n_particle,
                               .position = position,
@@ -119,63 +124,116 @@ static double cycles_since_search(const struct dem *dem)
     return (double)(dem->cycle - dem->search_cycle);
 }
 
-// The cheapest depth (head of this file) if grains go on as fast as since the last
-// search.
-static double best_skin(const struct dem *dem)
-{
-    const double deepest = 0.6, shallowest = 0.05;
-    const double rate = 2 * dem->travelled / cycles_since_search(dem);
-    return fmin(fmax(sqrt(SEARCH_COST * rate), shallowest), deepest);
-}
+// In mean radii. The deepest skin makes the cells of the search as wide for all grains.
+static const double SHALLOWEST = 0.05, DEEPEST = 0.6;
 
-// Whether sweeping the pairs that the best skin would leave out costs more, in as many
-// cycles again, than a search now.
-static bool skin_is_too_deep(const struct dem *dem)
+// What the box leaves room for, where it repeats.
+static double deepest_skin(const struct dem *dem)
 {
-    const double cycles = cycles_since_search(dem);
-    return dem->n_bond == 0 && cycles > 0 &&
-           cycles * (dem->skin - best_skin(dem)) > SEARCH_COST;
-}
-
-static void tune_skin(struct dem *dem)
-{
-    if (cycles_since_search(dem) <= 0 || dem->n_bond > 0) return;
-    const double best = best_skin(dem);
-    double skin = fmin(best, sqrt(dem->skin * best)); // deeper only in small steps
+    double deepest = DEEPEST;
     for (int axis = 0; axis < 3; axis++)
         if (dem->period[axis] > 0)
-            skin = fmin(skin, 0.5 * dem->period[axis] - 2 * dem->largest_radius -
-                                  bridge_cutoff(dem));
-    dem->skin = fmax(skin, 1e-3);
+            deepest = fmin(deepest, 0.5 * dem->period[axis] - 2 * dem->largest_radius -
+                                        bridge_cutoff(dem));
+    return fmax(deepest, 1e-3);
+}
+
+static double travel(const struct dem *dem, int i)
+{
+    return distance(as_vector(dem->place[i].displacement), dem->place_at_search[i]);
+}
+
+static double speed(const struct dem *dem, int i)
+{
+    return dem->time_step * norm(as_vector(velocity_of(dem, i)));
+}
+
+// How fast two grains approached since the last search, beyond what skins foresaw.
+static double unforeseen_rate(const struct dem *dem)
+{
+    const double cycles = cycles_since_search(dem);
+    const double elapsed = dem->horizon > 0 ? fmin(cycles / dem->horizon, 1) : 0;
+    double most = wall_travel(dem);
+    for (int i = 0; i < dem->n_particle; i++) {
+        const double foreseen = elapsed * (dem->half_skin[i] - 0.5 * dem->skin);
+        most = fmax(most, travel(dem, i) + dem->closed_in - foreseen);
+    }
+    return 2 * most / cycles;
+}
+
+// Skins of grains that go on at their speeds, for T cycles.
+static void set_skins(struct dem *dem)
+{
+    const double deepest = deepest_skin(dem);
+    dem->skin = fmin(dem->skin, deepest);
+    double sum = 0;
+    for (int i = 0; i < dem->n_particle; i++) {
+        const double deep = 0.5 * dem->skin + speed(dem, i) * dem->horizon;
+        dem->half_skin[i] = fmin(deep, 0.5 * deepest);
+        sum += dem->half_skin[i];
+    }
+    dem->mean_skin = dem->n_particle > 0 ? 2 * sum / dem->n_particle : dem->skin;
+}
+
+// T and s at the least cost (head of this file).
+static void tune_skins(struct dem *dem)
+{
+    if (cycles_since_search(dem) <= 0 || dem->n_bond > 0) return;
+    double mean_speed = 0;
+    for (int i = 0; i < dem->n_particle; i++)
+        mean_speed += speed(dem, i) / dem->n_particle;
+    const double rate = unforeseen_rate(dem), slowest = 1e-12;
+    dem->horizon = sqrt(SEARCH_COST / fmax(rate + 2 * mean_speed, slowest));
+    const double best = rate * dem->horizon;
+    const double skin = fmin(best, sqrt(dem->skin * best)); // deeper in small steps
+    dem->skin = fmax(skin, SHALLOWEST);
+}
+
+// Whether sweeping the pairs that shallower skins would leave out costs more, in as
+// many cycles again, than a search now: at the pace so far, skins of a share F of these
+// last F cycles / used, and cost = 4 F mean skin + 75 used / (F cycles) is least at F.
+static bool skins_are_too_deep(const struct dem *dem)
+{
+    const double cycles = cycles_since_search(dem);
+    const double least =
+        fmax(SHALLOWEST / dem->mean_skin,
+             sqrt(SEARCH_COST * dem->used / (cycles * dem->mean_skin)));
+    return dem->n_bond == 0 && cycles > 0 &&
+           cycles * dem->mean_skin * (1 - least) > SEARCH_COST;
 }
 
 void find_pairs(struct dem *dem)
 {
-    tune_skin(dem);
+    tune_skins(dem);
+    set_skins(dem);
     close_pair_ledger(dem);
     const struct candidates found = find_candidates(dem);
     take_pairs(dem, found.count, found.particle, found.bond);
     find_wall_pairs(dem);
     for (int i = 0; i < dem->n_particle; i++)
         dem->place_at_search[i] = as_vector(dem->place[i].displacement);
-    dem->travelled = dem->closed_in = 0;
+    dem->used = dem->closed_in = 0;
     dem->search_cycle = dem->cycle;
+}
+
+void count_approach(struct dem *dem, double distance)
+{
+    dem->closed_in += distance;
+    dem->used += distance / (0.5 * dem->skin);
 }
 
 bool pairs_are_due(struct dem *dem)
 {
-    double largest_distance = wall_travel(dem);
-    const bool is_near = fmax(dem->travelled, largest_distance) <= 0.5 * dem->skin;
-    if (is_near && !skin_is_too_deep(dem)) return false;
+    const double walls = wall_travel(dem) / (0.5 * dem->skin);
+    const bool is_near = fmax(dem->used, walls) <= 1;
+    if (is_near && !skins_are_too_deep(dem)) return false;
+    double largest_share = 0;
     for (int i = 0; i < dem->n_particle; i++)
-        largest_distance =
-            fmax(largest_distance, distance(as_vector(dem->place[i].displacement),
-                                            dem->place_at_search[i]));
+        largest_share = fmax(largest_share, travel(dem, i) / dem->half_skin[i]);
     // Walls approach as grains do.
-    largest_distance = fmax(largest_distance + dem->closed_in, wall_travel(dem));
-    dem->travelled = largest_distance;
+    dem->used = fmax(largest_share + dem->closed_in / (0.5 * dem->skin), walls);
     // So near the limit, looking again soon would cost more than a search.
-    return !(largest_distance <= 0.9 * 0.5 * dem->skin) || skin_is_too_deep(dem);
+    return !(dem->used <= 0.9) || skins_are_too_deep(dem);
 }
 
 void renew_pairs(struct dem *dem)

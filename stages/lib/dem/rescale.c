@@ -74,14 +74,13 @@ static double *gaps_now(const struct dem *dem)
 }
 
 // How much two grains that do not touch may have approached, half of it each.
-static void count_approach(struct dem *dem, const double stretch[3], double growth)
+static double approach(const struct dem *dem, const double stretch[3], double growth)
 {
     const double least = fmin(stretch[0], fmin(stretch[1], stretch[2]));
     const double reach = 2 * dem->largest_radius + dem->skin + bridge_cutoff(dem);
     const double nearer =
         fmax(0, 1 - least) * reach + fmax(0, 1 - 1 / growth) * 2 * dem->largest_radius;
-    dem->closed_in += 0.5 * nearer;
-    dem->travelled += 0.5 * nearer;
+    return 0.5 * nearer;
 }
 
 enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
@@ -98,7 +97,7 @@ enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
     }
     const double taken = place_pairs(dem, gap, grown);
     if (grown) set_wall_laws(dem);
-    count_approach(dem, stretch, growth);
+    count_approach(dem, approach(dem, stretch, growth));
     free(gap);
     if (!dem->balance_energy) return STATUS_OK;
     dem->energy_ledger.bridges += taken;

@@ -5,7 +5,7 @@
 //
 // A run that is restored goes on to the same bytes as one that never stopped. So the
 // state has all that rounding depends on: the order of grains (`identity`) and pairs,
-// the skin, and the travel since the last search.
+// the skins, and the travel since the last search.
 #include "dem/state_columns.h"
 
 #include "basics/memory.h"

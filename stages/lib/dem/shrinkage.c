@@ -81,8 +81,7 @@ void dem_set_shrinkage(struct dem *dem, const double *shrinkage)
     for (int p = 0; p < dem->pairs.n_pair; p++)
         shrink_pair(dem, p, before);
     free(before);
-    dem->closed_in += swelling;
-    dem->travelled += swelling;
+    count_approach(dem, swelling);
     if (dem->balance_energy) dem->energy_ledger.gained += elastic_energy(dem) - elastic;
 }
 

@@ -56,6 +56,7 @@ static void reorder_grains(struct dem *dem, const int32_t *order)
     REORDER(dem->group_of);
     REORDER(dem->lever);
     REORDER(dem->place_at_search);
+    REORDER(dem->half_skin);
     REORDER(dem->grain_ledger);
     for (int k = 0; k < dem->n_particle; k++)
         dem->index[dem->id[k]] = k;

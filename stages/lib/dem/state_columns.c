@@ -73,7 +73,9 @@ static void add_scalars(struct column_list *list, struct dem *dem)
               {"search_cycle", ARRAY_INT64, 1, &dem->search_cycle, 0, LARGEST_COUNT},
               {"searches_in_order", ARRAY_INT32, 1, &dem->searches_in_order, 0, 1e9},
               {"skin", ARRAY_FLOAT64, 1, &dem->skin, SMALLEST, LARGEST},
-              {"travelled", ARRAY_FLOAT64, 1, &dem->travelled, 0, LARGEST},
+              {"horizon", ARRAY_FLOAT64, 1, &dem->horizon, 0, LARGEST_COUNT},
+              {"mean_skin", ARRAY_FLOAT64, 1, &dem->mean_skin, SMALLEST, LARGEST},
+              {"used", ARRAY_FLOAT64, 1, &dem->used, 0, LARGEST},
               {"closed_in", ARRAY_FLOAT64, 1, &dem->closed_in, 0, LARGEST},
               {"box_lower", ARRAY_FLOAT64, 3, dem->box_lower, -LARGEST, LARGEST},
               {"box_upper", ARRAY_FLOAT64, 3, dem->box_upper, -LARGEST, LARGEST},
@@ -146,6 +148,7 @@ static void add_grains(struct column_list *list, struct dem *dem)
             1;
     add_numbers(list, "mobility", WHOLE(dem->mobility), 2, n)->least = 0;
     add_numbers(list, "displacement_at_search", WHOLE(dem->place_at_search), 3, n);
+    add_numbers(list, "half_skin", WHOLE(dem->half_skin), 1, n)->least = SMALLEST;
     if (dem->applied) add_numbers(list, "applied_force", WHOLE(dem->applied), 3, n);
     if (dem->shrinkage) add_numbers(list, "shrinkage", WHOLE(dem->shrinkage), 1, n);
     if (dem->balance_energy)

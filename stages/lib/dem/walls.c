@@ -2,7 +2,7 @@
 // Rigid walls: which grains are near, how they move, and what grains do to them in sum
 // (wall_contact.c has the law of the contact). In code order, with the wall's velocity
 // v, normal n and time step dt,
-//     near:     overlap >= -(skin + longest gap of a bridge)
+//     near:     overlap >= -(half skins of grain and wall + longest gap of a bridge)
 //     servo:    v.n = share (wanted - F_n) / resistance, |v.n| <= its largest speed,
 //               F_n = -force . n,  resistance = sum over its contacts of k dt + c
 //     moves:    displacement += v dt
@@ -35,14 +35,14 @@ void find_wall_pairs(struct dem *dem)
 {
     struct wall_pair *old = dem->wall_pair;
     const struct wall_pair *last = old, *end = old + dem->n_wall_pair;
-    const double reach = dem->skin + wall_bridge_cutoff(dem);
+    const double reach = 0.5 * dem->skin + wall_bridge_cutoff(dem);
     int capacity = 0;
     dem->wall_pair = NULL;
     dem->n_wall_pair = 0;
     for (int i = 0; i < dem->n_particle; i++)
         for (int w = 0; w < dem->n_wall && !is_driven(dem, i); w++) {
             const struct wall_geometry contact = wall_geometry(dem, i, w, 0);
-            if (!(contact.overlap >= -reach)) continue;
+            if (!(contact.overlap >= -(reach + dem->half_skin[i]))) continue;
             struct wall_pair pair = {.particle = i,
                                      .wall = w,
                                      .law = wall_law(dem, i, &dem->wall[w].is),

@@ -35,11 +35,14 @@ static struct packing gas(const uint8_t periodic[3])
     return packing;
 }
 
-static struct dem *flying(const struct packing *packing)
+// One grain of EVERY flies.
+static struct dem *flying(const struct packing *packing, int every)
 {
     struct dem_setup setup = stiff_setup(packing);
     struct dem *dem = create(&setup);
     struct vector *velocity = random_vectors(N, 100, 23);
+    for (int i = 0; i < N; i++)
+        if (i % every > 0) velocity[i] = (struct vector){0, 0, 0};
     dem_set_velocity(dem, velocity, NULL);
     free(velocity);
     return dem;
@@ -72,12 +75,13 @@ static int touching(const struct dem *dem)
     return n;
 }
 
+// Grains at rest have a shallower skin than those that fly.
 TEST(no_contact_is_missed)
 {
     const uint8_t periodic[3][3] = {{0, 0, 0}, {1, 1, 0}, {1, 1, 1}};
-    for (int k = 0; k < 3; k++) {
-        struct packing packing = gas(periodic[k]);
-        struct dem *dem = flying(&packing);
+    for (int k = 0; k < 6; k++) {
+        struct packing packing = gas(periodic[k / 2]);
+        struct dem *dem = flying(&packing, k % 2 ? 5 : 1);
         int met = 0;
         for (int step = 0; step < 100; step++) {
             run(dem, 40);
@@ -85,7 +89,7 @@ TEST(no_contact_is_missed)
             assert_int_equal(n, touching_by_brute_force(&packing, dem));
             met += n;
         }
-        assert_true(met > 100);
+        assert_true(met > (k % 2 ? 20 : 100));
         dem_free(dem);
         packing_free(&packing);
     }
@@ -95,7 +99,7 @@ TEST(another_search_changes_nothing)
 {
     const uint8_t periodic[3] = {1, 1, 0};
     struct packing packing = gas(periodic);
-    struct dem *rare = flying(&packing), *often = flying(&packing);
+    struct dem *rare = flying(&packing, 1), *often = flying(&packing, 1);
     for (int step = 0; step < 300; step++) {
         find_pairs(often);
         run(often, 7);
