@@ -276,13 +276,26 @@ static enum status compute(const struct artifact *input,
     return parameters->tensor ? find_columns(flow, &solving, reason) : STATUS_OK;
 }
 
+// Whether fluid is let, or sent, through a wall beside the drop.
+static bool is_open_beside(const struct imposed *imposed)
+{
+    bool open = false;
+    for (int wall = 0; wall < WALL_COUNT; wall++)
+        open = open || (wall / 2 != imposed->along &&
+                        (!isnan(imposed->pressure[wall]) ||
+                         (!isnan(imposed->flux[wall]) && imposed->flux[wall] != 0)));
+    return open;
+}
+
 // mu U / (drop over the length) along the drop, m2. NAN where no drop along an axis was
-// imposed, or where grains that move drive flow as well.
+// imposed, or where grains that move or walls beside it drive flow as well.
 static double permeability_of(const struct computation *flow,
                               const struct imposed *imposed)
 {
     const int axis = imposed->along;
-    if (axis == ALONG_NONE || !(fabs(imposed->drop) > 0) || flow->opening) return NAN;
+    if (axis == ALONG_NONE || !(fabs(imposed->drop) > 0) || flow->opening ||
+        is_open_beside(imposed))
+        return NAN;
     return component(flow->forces.velocity, axis) * flow->grains.unit *
            flow->grains.unit * component(flow->grains.box, axis) / imposed->drop;
 }

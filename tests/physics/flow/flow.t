@@ -280,6 +280,13 @@ with scratch_paths() as at:
     ok(result["summary"].attrs["closed_throats"] > 0 and np.abs(total(result)).max() < 1e-12,
        "overlap closes throats, and the forces still sum up", total(result))
 
+    # A wall beside the drop that lets fluid through: what flows is no measure of the permeability.
+    has_one = ["permeability" in flow(pack(lattice, at(f"beside_{upper}")), along="x", **{
+        "pressure.y_lower": "null", "pressure.y_upper": "null", "pressure.z_upper": upper})["summary"].attrs
+        for upper in ("null", 0.5)]
+    ok(has_one == [True, False],
+       "no permeability where fluid passes a wall beside the drop", has_one)
+
     # Empty space above a bed: the permeability of the bed is that of a box that ends where it
     # ends, and a line says which is which.
     run("pack", "-q", "--set", "method=deposition", "--set", "count=400", "--set", "radius=5e-4",
