@@ -451,6 +451,7 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     take_shrinkage(dem, setup);
     take_walls(dem, setup);
     dem->features = choose_features(dem, setup);
+    dem->springs_differ = dem->kind != DEM_LINEAR || dem->n_material > 1;
     place_motions(dem);
     start_groups(dem);
     dem->sweep = choose_sweep(dem->features);

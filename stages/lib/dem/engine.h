@@ -175,7 +175,8 @@ extern pair_sweep *const pair_sweeps_avx512[FEATURE_SETS];
 struct dem {
     struct units unit;
     enum dem_law kind;
-    unsigned features; // bits of enum feature that the scene needs
+    unsigned features;   // bits of enum feature that the scene needs
+    bool springs_differ; // pairs differ in more than damping
     int n_material;
     struct material *material; // (n_material)
     double *pair_friction;     // (n_material^2)
