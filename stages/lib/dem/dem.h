@@ -353,7 +353,7 @@ void dem_shrinkage(const struct dem *dem, double *shrinkage); // (n_particle) as
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is
 // asked for later is finite but has no meaning. O(CYCLES pairs); pairs are sought again
-// only after a grain has moved by half a skin. One call of n cycles and n calls of one
+// only after a grain has moved by half its skin. One call of n cycles and n calls of one
 // give the same bytes.
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason);
 
