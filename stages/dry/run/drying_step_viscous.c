@@ -5,11 +5,14 @@
 //     liquid -= loss duration.
 // The conductances follow the filled length, so saturation_step is the accuracy in
 // time; at 1 the flow is only found again at events, as K does. Throats that empty or
-// fill within TIE of their volume do so together.
+// fill within TIE of their volume do so together. The step that would pass
+// stop_saturation ends there, as pressures that are kept of the end must not be those
+// of a later moment at which another throat has emptied.
 #include "run.h"
 
 #include "basics/memory.h"
 
+#include <float.h>
 #include <math.h>
 
 // Throats that have this part of their volume left, or less, when another empties would
@@ -50,6 +53,16 @@ static void lose(struct occupancy *occupancy, int throat, double amount)
         *liquid = (struct compensated){0};
         compensated_add(&occupancy->total_liquid, -before);
     }
+}
+
+// Time until the saturation is just below stop_saturation, by rounding alone, so that
+// truncate_history has next to nothing to cut and what is found there is of the end.
+static double time_to_stop(const struct run *run)
+{
+    const double stop = run->conditions->stop_saturation;
+    if (stop == 0) return INFINITY;
+    const double excess = network_saturation(run) - stop + 4 * DBL_EPSILON;
+    return excess * run->occupancy.capacity / rate_now(run);
 }
 
 // Lets all throats lose for DURATION, and notes which have changed.
@@ -112,7 +125,7 @@ static void empty_throats(struct run *run)
 
 void carry_out_losses(struct run *run)
 {
-    advance(run, time_to_first(run));
+    advance(run, fmin(time_to_first(run), time_to_stop(run)));
     empty_throats(run);
 }
 

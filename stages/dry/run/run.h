@@ -77,7 +77,8 @@ void record_state(struct run *run);
 void note_breakthrough(struct run *run);
 
 // Advances time with run->losses until the first throat has emptied or filled, or has
-// changed by saturation_step; gas fills the throats that have emptied.
+// changed by saturation_step, or the saturation has fallen to stop_saturation; gas
+// fills the throats that have emptied.
 void carry_out_losses(struct run *run);
 
 // Kelvin effect: finds run->losses for the present menisci. Statuses as

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Snapshots of a drying that stops early: the pressures at the stop are those that the same
-# drying has there when it goes on.
+# Snapshots of a drying that stops early, between two throats that empty: the pressures at the
+# stop are those with which another drying begins there.
 import sys
 
 import h5py
@@ -14,15 +14,24 @@ scene = ["-q", "-p", SCENE]
 network = run("merge-nodes", *scene, input=run("tessellate", *scene, input=run("pack", *scene, *sets("counts=[3,3,4]"))))
 
 
-def pressures(stop, snapshots, kelvin):
+def pressures(kelvin, target, source, stop, *settings):
     run("dry", *scene, *sets("liquid=viscous", "viscosity=1e-6", f"kelvin={kelvin}", f"stop_saturation={stop}",
-                             f"snapshots={snapshots}"), "-o", at("drying"), input=network)
-    with h5py.File(at("drying")) as file:
-        return file["snapshots/liquid_pressure"][:]
+                             *settings), at(source), "-o", at(target))
+    with h5py.File(at(target)) as file:
+        return file["snapshots/liquid_pressure"][:], file["snapshots/saturation"][:]
 
 
+with open(at("network"), "wb") as file:
+    file.write(network)
 for kelvin in "false", "true":
-    stopped, longer = pressures(0.5, [0.8, 0.5, 0.3], kelvin), pressures(0.4, [0.8, 0.5], kelvin)
-    ok(longer[1].min() < 0 and (stopped[:2] == longer).all(), f"kelvin {kelvin}: pressures at the stop", abs(stopped[:2] - longer).max())
-    ok((stopped[2] == stopped[1]).all(), "what lies below the stop is as at the stop")
+    for stop in 0.5, 0.72:
+        stopped, saturation = pressures(kelvin, "stopped", "network", stop, f"snapshots=[0.8,{stop},0.3]")
+        longer, _ = pressures(kelvin, "longer", "network", stop - 0.1, "snapshots=[0.8]")
+        begun, start = pressures(kelvin, "begun", "longer", stop - 0.1, f"start_saturation={stop}",
+                                 f"snapshots=[{stop + 1e-9}]")
+        ok((stopped[0] == longer[0]).all(), f"kelvin {kelvin}: before the stop at {stop} pressures do not depend on it")
+        off = abs(stopped[1] - begun[0]).max() / abs(begun[0]).max()
+        ok(begun[0].min() < 0 and saturation[1] == stop and abs(start[0] - stop) < 1e-12 and off < 1e-8,
+           f"kelvin {kelvin}: at the stop they are those with which a drying begins there", off)
+        ok((stopped[2] == stopped[1]).all(), "what lies below the stop is as at the stop")
 done()
