@@ -10,6 +10,7 @@
 #include "basics/memory.h"
 #include "geometry/neighbours.h"
 #include "geometry/support.h"
+#include "suggest.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -125,9 +126,10 @@ static void say_gap(const struct bond_facts *facts, char text[200])
             1.05 * facts->gap + 1e-6);
 }
 
-void judge_bonds(const struct packing *packing, const struct bond_facts *facts, int n,
-                 double bottom, struct findings *findings)
+void judge_bonds(const struct packing *packing, const struct packing_facts *packed,
+                 const struct bond_facts *facts, struct findings *findings)
 {
+    const int n = packed->n;
     char what[200];
     say_gap(facts, what);
     if (n < 2) return;
@@ -143,8 +145,8 @@ void judge_bonds(const struct packing *packing, const struct bond_facts *facts, 
     if (!packing->n_bond || packing->periodic[2] || facts->at_bottom >= 3) return;
     add_finding(findings, FINDING_NOTE, "support",
                 "%d grain%s the lower z wall, all that dem-replay holds by default: "
-                "hold those with centres below %.3g m by dem-replay.held, or "
+                "hold those with centres below %.*g m by dem-replay.held, or "
                 "none by support=free",
                 facts->at_bottom, facts->at_bottom == 1 ? " touches" : "s touch",
-                bottom);
+                3 + digits_of_origin(packed), bottom_of(packed));
 }

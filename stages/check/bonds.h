@@ -19,5 +19,5 @@ struct bond_facts bond_facts(const struct packing *packing);
 
 // Adds what these facts mean to FINDINGS. N: grains in all; BOTTOM: the height (m)
 // below which grains should be held. Nothing is said of fewer than two grains.
-void judge_bonds(const struct packing *packing, const struct bond_facts *facts, int n,
-                 double bottom, struct findings *findings);
+void judge_bonds(const struct packing *packing, const struct packing_facts *packed,
+                 const struct bond_facts *facts, struct findings *findings);

@@ -137,7 +137,7 @@ static struct findings judge(const struct packing *packing,
     if (!facts->n) return findings;
     judge_packing(packing, facts, &findings);
     judge_rounding(packing, facts, gap, &findings);
-    judge_bonds(packing, bonds, facts->n, bottom_of(facts), &findings);
+    judge_bonds(packing, facts, bonds, &findings);
     judge_free(facts, &findings);
     if (have_other_units(&findings)) return findings;
     judge_defaults(facts, &findings);

@@ -4,7 +4,8 @@
 // Text goes to memory first and out in one piece. Suggestions and cost are left out
 // where more is wrong than overlaps, since they would be of the wrong grains.
 //
-// Numbers for people have three digits, those for programs all.
+// Numbers for people have three digits, and places more where the body lies far from
+// the origin; those for programs have all.
 //
 //     SEVERITY: NAME: text             a line each finding, the worst first
 //     grains, box, contacts, bonds     what was measured; not without grains
@@ -72,9 +73,10 @@ static void tell_facts(const struct checked *checked, FILE *out)
     fputc('\n', out);
 }
 
-// As --set takes them: a.b=1 c=[1,2,3]. Members that are neither numbers, lists of
-// three nor objects do not occur.
-static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
+// As --set takes them: a.b=1 c=[1,2,3], lists being places with so many DIGITS. Members
+// that are neither numbers, lists of three nor objects do not occur.
+static void tell_numbers(const char *prefix, const json_t *object, int digits,
+                         FILE *out)
 {
     const char *key;
     json_t *value;
@@ -85,12 +87,12 @@ static void tell_numbers(const char *prefix, const json_t *object, FILE *out)
         if (json_is_number(value))
             fprintf(out, " %s=%.4g", name, json_number_value(value));
         if (json_is_array(value))
-            fprintf(out, " %s=[%.4g,%.4g,%.4g]", name,
-                    json_number_value(json_array_get(value, 0)),
-                    json_number_value(json_array_get(value, 1)),
+            fprintf(out, " %s=[%.*g,%.*g,%.*g]", name, digits,
+                    json_number_value(json_array_get(value, 0)), digits,
+                    json_number_value(json_array_get(value, 1)), digits,
                     json_number_value(json_array_get(value, 2)));
         snprintf(name, sizeof name, "%s%s.", prefix, key);
-        if (json_is_object(value)) tell_numbers(name, value, out);
+        if (json_is_object(value)) tell_numbers(name, value, digits, out);
     }
 }
 
@@ -107,7 +109,8 @@ static void tell_suggested(const struct checked *checked, FILE *out)
 {
     json_t *suggested = suggest(checked->material, checked->packing, checked->facts);
     fprintf(out, "suggested  dem-replay:");
-    tell_numbers("", json_object_get(suggested, "dem-replay"), out);
+    tell_numbers("", json_object_get(suggested, "dem-replay"),
+                 4 + digits_of_origin(checked->facts), out);
     fprintf(out, "\n           (strengths: the stress of the largest force to expect; "
                  "try a third to three times)\n");
     fprintf(out, "weight     of a grain %.2g, of the body %.2g of its suction\n",

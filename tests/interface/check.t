@@ -5,6 +5,7 @@ all pairs and places finds, `pack` refuses what cannot be and says what can hard
 replay without bonds ends at once."""
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -88,6 +89,18 @@ ok(status == 0 and report["inputs"][0]["schema"] == "craquelure/packing/1", "a p
 ok(call("check", "-q", good)[1] == "", "-q says it by the status alone")
 ok(call("check", at("scene.json"))[0] == 65, "what holds no grains is bad input")
 ok(call("check", at("nothing"))[0] == 66, "no such input")
+
+# A body far from the origin: places that are told still say where its lowest grains are.
+for origin in 0, 0.01, 3, 1000:
+    far = text("far", x + origin, r)
+    told = call("check", *near, far)[1]
+    box = {key: float(z) for key, z in re.findall(r"held\.(\w+)=\[\S+,(\S+)\]", told)}
+    below = float(re.search("centres below (\\S+) m", told)[1])
+    want = check(far, *near)[1]["suggested"]["dem-replay"]["held"]
+    z = x[:, 2] + origin
+    held = (z < want["upper"][2]).sum()
+    ok(held > 3 and (z < below).sum() == held == ((z > box["lower"]) & (z < box["upper"])).sum(),
+       f"grains to hold, {origin} m from the origin", (held, below, box))
 
 with open(good, "rb") as file:
     lines = file.read()

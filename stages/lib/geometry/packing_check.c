@@ -36,6 +36,19 @@ void add_finding(struct findings *findings, enum severity severity, const char *
     va_end(list);
 }
 
+int digits_of_origin(const struct packing_facts *facts)
+{
+    double farthest = 0, side = 0;
+    for (int axis = 0; axis < 3; axis++) {
+        const double low = component(facts->box.lower, axis);
+        const double high = component(facts->box.upper, axis);
+        farthest = fmax(farthest, fmax(fabs(low), fabs(high)));
+        side = fmax(side, high - low);
+    }
+    if (!(farthest > side)) return 0;
+    return (int)fmin(12, ceil(log10(farthest / side)));
+}
+
 // ---- one after the other ------------------------------------------------------------
 
 // Powers of 1000, because files are in millimetres, micrometres or nanometres. The
@@ -158,6 +171,19 @@ static void judge_overlaps(const struct packing_facts *facts, struct findings *f
                     facts->overlap);
 }
 
+// The box is larger than the grains, which reach from LOW to HIGH.
+static void say_ends(const struct packing_facts *facts, struct vector low,
+                     struct vector high, struct findings *findings)
+{
+    const int n = 6 + digits_of_origin(facts);
+    add_finding(findings, FINDING_WRONG, "empty",
+                "%.0f %% of the box is more than %.3g m from every grain, and would "
+                "fill with liquid: end it with the grains, by "
+                "pack.lower=[%.*g,%.*g,%.*g] pack.upper=[%.*g,%.*g,%.*g]",
+                100 * facts->empty, facts->far, n, low.x, n, low.y, n, low.z, n, high.x,
+                n, high.y, n, high.z);
+}
+
 // `far` is how far from a surface a place must be to count as empty; where the grains
 // reach all walls, the empty part is inside.
 static void judge_room(const struct packing_facts *facts, struct findings *findings)
@@ -187,13 +213,7 @@ static void judge_room(const struct packing_facts *facts, struct findings *findi
                     "body (docs/your-grains.md)",
                     100 * facts->empty, facts->far);
     else
-        add_finding(findings, FINDING_WRONG, "empty",
-                    "%.0f %% of the box is more than %.3g m from every grain, and "
-                    "would fill with "
-                    "liquid: end it with the grains, by pack.lower=[%.6g,%.6g,%.6g] "
-                    "pack.upper=[%.6g,%.6g,%.6g]",
-                    100 * facts->empty, facts->far, low.x, low.y, low.z, high.x, high.y,
-                    high.z);
+        say_ends(facts, low, high, findings);
 }
 
 // A layer across y is what other stages expect (1 is y).

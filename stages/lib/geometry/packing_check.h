@@ -65,6 +65,10 @@ struct findings {
 void add_finding(struct findings *findings, enum severity severity, const char *name,
                  const char *format, ...) __attribute__((format(printf, 4, 5)));
 
+// How many more digits places need than lengths of the body, which may lie far from the
+// origin.
+int digits_of_origin(const struct packing_facts *facts);
+
 // Adds to FINDINGS, which may have some, what these facts say, the worst first. Text
 // names keys of pack and check, for the user to change.
 void judge_packing(const struct packing *packing, const struct packing_facts *facts,
