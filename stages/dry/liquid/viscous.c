@@ -279,13 +279,21 @@ static double resistance_of(struct liquid_flow *flow,
     return memory->resistance;
 }
 
+// Whether a throat is partly empty that gas does not enter most easily. It refills from
+// the one that gas does, even where nothing evaporates.
+static bool others_are_partial(const struct liquid_flow *flow,
+                               const struct cluster_problem *problem)
+{
+    return problem->n_partial > !is_full(flow, problem->reference);
+}
+
 // Whether only the easiest meniscus can move: along any path the potential drops by
 // less than its margin over the next.
 static bool only_one_moves(struct liquid_flow *flow,
                            const struct cluster_problem *problem)
 {
     if (problem->n_meniscus == 1) return true;
-    if (problem->n_partial > !is_full(flow, problem->reference)) return false;
+    if (others_are_partial(flow, problem)) return false;
     return problem->evaporation * resistance_of(flow, problem) < problem->margin;
 }
 
@@ -351,7 +359,7 @@ static enum status find_losses(struct liquid_flow *flow,
 {
     if (flow->response) return find_given(flow, problem, loss, n_loss, reason);
     count_menisci(flow, problem);
-    if (!(problem->turnover > 0) && problem->n_partial < 2) {
+    if (!(problem->turnover > 0) && !others_are_partial(flow, problem)) {
         if (flow->wants_pressures) write_pressures(flow, problem, true);
         return STATUS_OK;
     }

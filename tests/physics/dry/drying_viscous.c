@@ -117,6 +117,40 @@ TEST(pressures_along_a_chain)
     network_free(&network);
 }
 
+// Under a throat that keeps all vapour in, a wide meniscus recedes and a narrow throat
+// that is half empty refills from it: the difference of their capillary pressures
+// drives the flow through both, the narrow one as short as its liquid.
+TEST(refills_where_nothing_evaporates)
+{
+    struct network network = lattice_column(5, spacing);
+    int throat[5]; // from the bottom: empty, wide, narrow and half full, empty, full
+    for (int k = 0; k < 5; k++)
+        throat[k] = lattice_throat(&network, 4 * k, 2);
+    network.throat_radius[throat[2]] *= 0.8;
+    double *start = NEW_ARRAY(double, network.n_throat);
+    start[throat[1]] = start[throat[4]] = 1;
+    start[throat[2]] = 0.5;
+    struct drying_conditions conditions = kharaghani_conditions(LIQUID_VISCOUS);
+    conditions.start = start;
+    const double full = 1;
+    conditions.snapshot = &full;
+    conditions.n_snapshot = 1;
+    struct drying_history history = dry_or_fail(&network, &conditions);
+    const double entry[] = {-2 * 0.07274 / network.throat_radius[throat[1]],
+                            -2 * 0.07274 / network.throat_radius[throat[2]]};
+    const double wide = resistance(&network, throat[1], conditions.viscosity);
+    const double narrow = resistance(&network, throat[2], conditions.viscosity) / 2;
+    const double flow = (entry[0] - entry[1]) / (wide + narrow);
+    const double missing = 998.2 * throat_volume(&network, throat[2]) / 2;
+    assert_int_equal(history.event_throat[0], throat[2]);
+    assert_int_equal(history.event_kind[0], EVENT_REFILLED);
+    assert_true(fabs(history.event_time[0] * flow / missing - 1) < 1e-11);
+    assert_true(fabs(history.pressure[8] / (entry[0] - flow * wide) - 1) < 1e-12);
+    drying_history_free(&history);
+    free(start);
+    network_free(&network);
+}
+
 // As conductances are renewed more often, the time at which the first throat has
 // emptied goes to a limit with the first power of the step.
 TEST(step_converges)
