@@ -29,9 +29,8 @@ static int list_links(struct liquid_flow *flow, const struct cluster_problem *pr
             solver->entry[t] = -1;
             if (liquid_ends(flow, t, end) != 2) continue;
             solver->entry[t] = n_link;
-            solver->link[n_link++] =
-                (struct graph_link){solver->site[end[0]], solver->site[end[1]],
-                                    flow->moving[t] ? 0 : flow->conductance[t]};
+            solver->link[n_link++] = (struct graph_link){
+                solver->site[end[0]], solver->site[end[1]], link_of_ends(flow, t)};
         }
     return n_link;
 }
@@ -109,8 +108,7 @@ static void set_boundary_conditions(struct liquid_flow *flow,
         int end[2];
         const int n = liquid_ends(flow, t, end);
         if (solver->entry[t] >= 0 && n == 2)
-            cluster_laplacian_set(graph, solver->entry[t],
-                                  flow->moving[t] ? 0 : flow->conductance[t]);
+            cluster_laplacian_set(graph, solver->entry[t], link_of_ends(flow, t));
         for (int e = 0; e < n; e++) {
             const int row = solver->row[end[e]];
             if (flow->moving[t])

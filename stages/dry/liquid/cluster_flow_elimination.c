@@ -34,7 +34,7 @@ static void link_throat(struct liquid_flow *flow, int throat)
                      extracted_from_end(flow, throat, n));
     if (n == 2)
         kron_link(&solver->kron, solver->site[end[0]], solver->site[end[1]],
-                  flow->conductance[throat]);
+                  link_of_ends(flow, throat));
 }
 
 static void link_end(struct liquid_flow *flow, int k)

@@ -7,8 +7,11 @@
 // that evaporation rises by response with the potential behind the meniscus, arm and
 // response / n are in series:
 //     arm (response / n) / (arm + response / n),
-// and the given evaporation is reduced alike (through_arm). Graph, potentials and
-// lists of a cluster are kept in cluster_memory and follow it when it splits.
+// and the given evaporation is reduced alike (through_arm). So is what a throat with
+// two liquid ends conducts between them: the meniscus stands between its two arms. Then
+// a response that is not needed, as all has been found, changes nothing. Graph,
+// potentials and lists of a cluster are kept in cluster_memory and follow it when it
+// splits.
 #include "flow_solver.h"
 
 #include "basics/memory.h"
@@ -66,6 +69,12 @@ double response_arm(const struct liquid_flow *flow, int throat, int n)
 double extracted_from_end(const struct liquid_flow *flow, int throat, int n)
 {
     return flow->solver->evaporation[throat] / n * through_arm(flow, throat, n);
+}
+
+double link_of_ends(const struct liquid_flow *flow, int throat)
+{
+    if (flow->moving[throat]) return 0;
+    return flow->conductance[throat] * through_arm(flow, throat, 2);
 }
 
 double end_potential(const struct liquid_flow *flow, int throat, int reference)

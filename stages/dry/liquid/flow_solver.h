@@ -95,6 +95,9 @@ double response_arm(const struct liquid_flow *flow, int throat, int n);
 double extracted_from_end(const struct liquid_flow *flow, int throat, int n);
 double end_potential(const struct liquid_flow *flow, int throat, int reference);
 
+// Conductance from one liquid end of THROAT to the other; 0 where its meniscus moves.
+double link_of_ends(const struct liquid_flow *flow, int throat);
+
 // Potential of NODE in CLUSTER, relative to the cluster's reference throat.
 double node_potential(const struct flow_solver *solver, int cluster, int node);
 

@@ -138,6 +138,61 @@ TEST(pair_at_first)
     }
 }
 
+// A throat in the surface joins the tops of both tubes. Its meniscus and that of the
+// narrow tube stay. Each takes half of what it evaporates from either end, and is as
+// curved as the pressure at its middle is low; this gives all flows.
+static void check_ring(double viscosity)
+{
+    struct pair pair = make_pair(viscosity);
+    const struct drying_conditions *conditions = &pair.conditions;
+    const int top = lattice_throat(&pair.network, 4, 0);
+    const double full = 1, radius[] = {pair.radius[0], pair.radius[1], 3e-9};
+    enum { WIDE, NARROW, TOP };
+    pair.network.throat_kind[top] = THROAT_NETWORK;
+    pair.network.throat_radius[top] = radius[TOP];
+    pair.conditions.snapshot = &full;
+    pair.conditions.n_snapshot = 1;
+    struct drying_history history = dry_or_fail(&pair.network, conditions);
+    assert_int_equal(history.event_throat[0], pair.wide);
+
+    const double *p = history.pressure, entry = -suction(conditions, radius[WIDE]);
+    double conductance[3], section[3], drives[3];
+    for (int k = 0; k < 3; k++) {
+        conductance[k] = 1 / resistance(conditions, radius[k]);
+        section[k] = radius[k] * radius[k];
+    }
+    const double below = (p[0] - p[1]) / resistance(conditions, pair.radius[2]);
+    const double up = conductance[NARROW] * (p[1] - p[5]);
+    const double across = conductance[TOP] * (p[4] - p[5]);
+    const double from_wide = 2 * conductance[WIDE] * (entry - p[4]);
+    const double narrow = 2 * (below - up), between = 2 * (from_wide - across);
+    const double rate = history.rate[0];
+    assert_true(fabs(2 * conductance[WIDE] * (entry - p[0]) - below) < 1e-10 * rate);
+    assert_true(fabs(up - narrow / 2 + across - between / 2) < 1e-10 * rate);
+
+    drives[WIDE] = drive(conditions, -entry);
+    drives[NARROW] =
+        drive(conditions, narrow / 4 / conductance[NARROW] - (p[1] + p[5]) / 2);
+    drives[TOP] = drive(conditions, between / 4 / conductance[TOP] - (p[4] + p[5]) / 2);
+    double parts[2]; // of the throat between, by the tube at the other side of the node
+    for (int k = WIDE; k <= NARROW; k++) {
+        const double all = section[k] + section[TOP];
+        const double mean = (section[k] * drives[k] + section[TOP] * drives[TOP]) / all;
+        parts[k] = pair.area * mean * section[TOP] / all;
+    }
+    assert_true(fabs(parts[WIDE] + parts[NARROW] - between) < 1e-10 * rate);
+    assert_true(fabs(parts[NARROW] * section[NARROW] / section[TOP] - narrow) <
+                1e-10 * rate);
+    drying_history_free(&history);
+    network_free(&pair.network);
+}
+
+TEST(ring_of_three_menisci)
+{
+    for (int k = -2; k <= 0; k++)
+        check_ring(middle_viscosity * pow(10, k));
+}
+
 // With the first power of the step at which conductances are renewed.
 TEST(pair_in_time)
 {
