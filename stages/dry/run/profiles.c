@@ -201,7 +201,7 @@ static void apply_changes(struct snapshot *snapshot,
 static int go_on_to(struct snapshot *snapshot, const struct drying_history *history,
                     int step, double level)
 {
-    while (history->saturation[step] > level && step < history->n_step - 1)
+    while (!is_down_to(history->saturation[step], level) && step < history->n_step - 1)
         apply_changes(snapshot, history, ++step);
     return step;
 }

@@ -6,6 +6,13 @@
 
 #include "drying.h"
 
+// Whether SATURATION is at LEVEL or below. It is a sum of many differences: a run that
+// begins at a level may do so above it by rounding.
+static inline bool is_down_to(double saturation, double level)
+{
+    return saturation <= level * (1 + 1e-12);
+}
+
 // Slices over the depth, and classes of cluster sizes: 1, 2-3, 4-7, ... throats.
 enum { PROFILE_SLICES = 20, PROFILE_CLASSES = 31 };
 

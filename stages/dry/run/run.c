@@ -12,6 +12,7 @@
 #include "run.h"
 
 #include "film_history.h"
+#include "profiles.h"
 
 #include "basics/sorted.h"
 
@@ -45,8 +46,8 @@ bool snapshot_is_due(const struct run *run)
     const struct drying_conditions *conditions = run->conditions;
     const int next = run->recorder.history->n_pressure;
     return conditions->liquid == LIQUID_VISCOUS && next < conditions->n_snapshot &&
-           network_saturation(run) <=
-               fmax(conditions->snapshot[next], conditions->stop_saturation);
+           is_down_to(network_saturation(run),
+                      fmax(conditions->snapshot[next], conditions->stop_saturation));
 }
 
 // The last step always is. Where steps were skipped, the rate recorded before them is
