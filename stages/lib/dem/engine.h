@@ -627,6 +627,7 @@ struct pair_geometry {
     struct vector normal;
     double stretch; // distance less the distance at the start
     double overlap;
+    double shared;          // of the radii, also where an overlap does not push
     struct vector position; // the contact point
 };
 // In plain C and scaled; for whatever looks at pairs outside of the sweep.

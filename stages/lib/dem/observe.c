@@ -3,8 +3,9 @@
 // the last force evaluation, at the places before the last displacement.
 //
 // Stress of dem_census, compression positive, over the volume V of the box:
-//     sigma_kl = 1/V sum over contacts of (R_i + R_j - U) n_k F_l,
-// with F on the second grain; walls add arm n_k F_l, with F on the wall.
+//     sigma_kl = 1/V sum over contacts of (R_i + R_j - S) n_k F_l,
+// with F on the second grain and S what the radii share, also where an overlap at the
+// start does not push; walls add arm n_k F_l, with F on the wall.
 // dem_unbalanced_ratio [K 4.20]: mean |F_i| of free grains over mean |F_ij| of
 // contacts.
 #include "dem/engine.h"
@@ -244,7 +245,7 @@ struct dem_census dem_census(const struct dem *dem)
         if (touches(dem, p, &geometry)) count_contact(&census, geometry.overlap);
         const int32_t *end = dem->pairs.particle[p];
         const double branch =
-            dem->place[end[0]].radius + dem->place[end[1]].radius - geometry.overlap;
+            dem->place[end[0]].radius + dem->place[end[1]].radius - geometry.shared;
         const struct vector force = pair_force(dem, p);
         for (int k = 0; k < 9; k++)
             census.stress[k / 3][k % 3] += unit * branch *

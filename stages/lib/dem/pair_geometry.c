@@ -26,12 +26,13 @@ struct pair_geometry pair_geometry(const struct dem *dem, int pair, double back)
         dot(apart, add(start, separation)) / (length + g->distance[lane]);
     geometry.overlap = g->overlap[lane] - geometry.stretch;
     const double radius = dem->place[i].radius;
-    const double shared = dem->unstressed ? radius + dem->place[j].radius -
-                                                g->distance[lane] - geometry.stretch
-                                          : geometry.overlap;
+    geometry.shared = dem->unstressed ? radius + dem->place[j].radius -
+                                            g->distance[lane] - geometry.stretch
+                                      : geometry.overlap;
     const struct vector centre =
         subtract(add(dem->start[i], as_vector(dem->place[i].displacement)),
                  scale(back * dem->time_step, as_vector(velocity_of(dem, i))));
-    geometry.position = add(centre, scale(radius - 0.5 * shared, geometry.normal));
+    geometry.position =
+        add(centre, scale(radius - 0.5 * geometry.shared, geometry.normal));
     return geometry;
 }

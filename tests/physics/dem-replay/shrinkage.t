@@ -121,6 +121,18 @@ with scratch_paths() as at:
             ok(near(force, full * (count - 2) / (count - 1), 2e-3),
                f"a bar of {count} grains feels all strain: {steps} steps of {cycles} cycles, {settings[0]}", force / full)
 
+    # Grains that overlap: bonds pull from centre to centre.
+    with open(at("bar.txt"), "w") as file:
+        file.writelines(f"{1.8 * RADIUS * k} 0 0 {RADIUS}\n" for k in range(3))
+    run("pack", "-q", "-s", "method=import", "-s", "check=none", at("bar.txt"), "-o", at("bar.h5"))
+    run("dem-replay", "-q", "-p", at("layer.json"), "-s", "held.walls=[]", "-s", "held.grains=[0,2]", at("bar.h5"), "-o",
+        at("barred.h5"))
+    file = h5py.File(at("barred.h5"))
+    force = -file["snapshots/contact_force"][1, :, 0]
+    box = file["domain/upper"][:] - file["domain/lower"][:]
+    ok(len(force) == 2 and near(file["history/lateral_tension"][3], force.sum() * 1.8 * RADIUS / 2 / box.prod(), 1e-6),
+       "the lateral tension of grains that overlap", force)
+
     # Scattered strengths, so that it cracks here and there.
     cracking = ["dem-replay", "-q", "-p", at("layer.json"), "-s",
                 "bond.strength.distribution=normal", "-s", "bond.normal_strength=2e5",
