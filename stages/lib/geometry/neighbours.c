@@ -291,11 +291,9 @@ int32_t (*near_pairs(const struct spheres *all, int *count))[2]
     return pair;
 }
 
-int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2]
+int32_t (*reaching_pairs(const struct packing *packing, const double *reach,
+                         int *count))[2]
 {
-    double *reach = NEW_ARRAY(double, packing->n_particle);
-    for (int i = 0; i < packing->n_particle; i++)
-        reach[i] = (1 + gap) * packing->radius[i];
     struct spheres all = {.count = packing->n_particle,
                           .position = packing->position,
                           .reach = reach,
@@ -305,7 +303,15 @@ int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count)
         if (packing->periodic[axis])
             all.period[axis] = component(packing->upper, axis) - all.lower[axis];
     }
-    int32_t(*pair)[2] = near_pairs(&all, count);
+    return near_pairs(&all, count);
+}
+
+int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2]
+{
+    double *reach = NEW_ARRAY(double, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        reach[i] = (1 + gap) * packing->radius[i];
+    int32_t(*pair)[2] = reaching_pairs(packing, reach, count);
     free(reach);
     return pair;
 }

@@ -21,6 +21,11 @@ struct spheres {
 // NULL, also for none.
 int32_t (*near_pairs(const struct spheres *all, int *count))[2];
 
+// All pairs of grains whose centres are at most the sum of their REACHES (n_particle),
+// > 0, apart; otherwise as above.
+int32_t (*reaching_pairs(const struct packing *packing, const double *reach,
+                         int *count))[2];
+
 // All pairs of grains whose surfaces are at most GAP times the sum of their radii apart
 // (overlapping ones too); otherwise as above.
 int32_t (*neighbour_pairs(const struct packing *packing, double gap, int *count))[2];

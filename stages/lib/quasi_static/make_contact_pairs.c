@@ -151,6 +151,13 @@ static void add_bonds(const struct contact_pair_setup *setup, struct pair_list *
     }
 }
 
+// From the centre, m: its surface, and as far again as it may move.
+static double reach_of(const struct contact_pair_setup *setup, int i)
+{
+    const double radius = setup->packing->radius[i];
+    return radius + SEARCH_RANGE * fmax(radius, setup->length);
+}
+
 // Bonded grains are pairs already. Both lists are sorted alike.
 static void add_near(const struct contact_pair_setup *setup, struct pair_list *list)
 {
@@ -159,8 +166,12 @@ static void add_near(const struct contact_pair_setup *setup, struct pair_list *l
         duplicate(packing->bond, (size_t)packing->n_bond, sizeof *bonded);
     if (packing->n_bond > 0)
         qsort(bonded, (size_t)packing->n_bond, sizeof *bonded, compare_pairs);
+    double *reach = NEW_ARRAY(double, packing->n_particle);
+    for (int i = 0; i < packing->n_particle; i++)
+        reach[i] = reach_of(setup, i);
     int n_near;
-    int32_t(*near)[2] = neighbour_pairs(packing, SEARCH_RANGE, &n_near);
+    int32_t(*near)[2] = reaching_pairs(packing, reach, &n_near);
+    free(reach);
     for (int k = 0; k < n_near; k++) {
         if (packing->n_bond > 0 && bsearch(near[k], bonded, (size_t)packing->n_bond,
                                            sizeof *bonded, compare_pairs))
@@ -178,8 +189,7 @@ static void add_wall(const struct contact_pair_setup *setup, struct pair_list *l
     const struct packing *packing = setup->packing;
     for (int i = 0; i < packing->n_particle; i++) {
         const double height = packing->position[i].z - packing->lower.z;
-        if (height <= (1 + SEARCH_RANGE) * packing->radius[i])
-            append(list, wall_pair(setup, i));
+        if (height <= reach_of(setup, i)) append(list, wall_pair(setup, i));
     }
 }
 

@@ -19,8 +19,9 @@ struct contact_pair_setup {
     double length, stiffness; // units, m and N/m
 };
 
-// Grains this far apart, over the sum of their radii, are pairs: they may come to
-// touch. Displacements are smaller, or pairs are sought again.
+// Grains this far apart, over the sum of their radii or of two mean ones where those
+// are larger, are pairs: they may come to touch. Displacements are at most so many mean
+// radii; where they may be larger, pairs are sought again.
 static const double SEARCH_RANGE = 0.1;
 
 // The contact pair of grains I and J, where J lies SEPARATION (m) from I; of grain I
