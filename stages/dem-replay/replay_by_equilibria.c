@@ -89,9 +89,13 @@ static enum status create(struct run *run, struct reason *reason)
     return quasi_static_create(&state->last, &setup, reason);
 }
 
+// Grains that have left have no load any more.
 static enum status find(struct run *run, struct reason *reason)
 {
     const enum status status = quasi_static_solve(last(run), run->force, reason);
+    const bool *is_detached = quasi_static_is_detached(last(run));
+    for (int i = 0; i < run->packing->n_particle; i++)
+        if (is_detached[i]) run->force[i] = (struct vector){0, 0, 0};
     if (run->settings->support == SUPPORT_FREE)
         run->taken_off = quasi_static_load(last(run), run->force);
     return status;

@@ -75,6 +75,13 @@ with scratch_paths() as at:
     ok(away["keep", 4000] > 2 * away["keep", 2000] > 10 * away["unload", 4000],
        "with loose_grains=keep it flies", away)
 
+    # ---- equilibria: the pair leaves, and is said to bear nothing
+    response = replay("pull", "engine=quasi-static", *breaks, "snapshots=[0.5]")
+    listed, held_by = response["snapshots/force"][-1], response["history/reaction_force"][-1]
+    ok(response["summary"].attrs["gone"] == 2 and not listed[1:].any() and
+       np.abs(listed.sum(axis=0) + held_by).max() < 1e-9 * unit, "equilibria: grains that left have no force",
+       (listed, held_by))
+
     # ---- who detached: the middle grain, whose bond breaks; the upper one never had any
     with h5py.File(at("pull"), "a") as forces:
         lower = forces["bonds/particles"][:1]
@@ -114,6 +121,31 @@ with scratch_paths() as at:
                           "bond.moment_contribution=0")
         tension = len(response["cracks/bond"])
         ok(tension == 0, f"{engine}, beta 0: a moment breaks nothing", tension)
+
+    # ---- a grain a tenth as large as that beneath, which crosses a gap of 0.15 of the sum of its
+    # radius and that of the one above: 0.075 mean radii, so that displacements are small
+    small, gap, stiff, glue = 0.1 * RADIUS, 0.03 * RADIUS, 100, 1e15
+    for n, name in enumerate(("near", "far")):
+        push = np.zeros((1, 3, 3))
+        push[:, 1, 2] = 0.035 * RADIUS * glue * AREA / 100
+        write_forces(name, push)
+        with h5py.File(at(name), "a") as forces:
+            forces["particles/radius"][:] = RADIUS, small, small
+            place = forces["particles/position"][0] + np.outer(
+                [0, RADIUS + small, RADIUS + 3 * small + (1 + n) * gap], [0, 0, 1])
+            forces["particles/position"][:] = place
+            lower = forces["bonds/particles"][:1]
+            del forces["bonds/particles"]
+            forces["bonds/particles"] = lower
+            forces["bonds/particles"].attrs["units"] = "1"
+    neck = glue * AREA / 100
+    held = ("held.walls=[]", "held.grains=[0,2]", "friction=0", f"normal_stiffness={2 * stiff}", "snapshots=[1]",
+            f"bond.normal_stiffness={glue}", "bond.normal_strength=1e12", "bond.shear_strength=1e12")
+    moves = {"near": (0.035 * RADIUS * neck + stiff * gap) / (neck + stiff), "far": 0.035 * RADIUS}
+    for name, wanted in moves.items():
+        response = replay(name, "engine=quasi-static", *held)
+        moved = response["snapshots/displacement"][0, 1, 2]
+        ok(abs(moved / wanted - 1) < 1e-6, f"equilibria: a small grain meets another if that is {name}", moved / wanted)
 
     # ---- engine=auto
     for settings, engine in ((("friction=0",), "quasi-static"), (("friction=0.5",), "explicit"),
