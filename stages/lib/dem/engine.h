@@ -467,11 +467,12 @@ double wall_pair_energy(const struct dem *dem, const struct wall_pair *pair);
 
 // How grain I lies to wall W when both are at BACK time steps before now
 // [wall_shapes.c]. The nearest point of the wall is radius - overlap from the centre
-// along the normal; a centre that has passed the surface is pushed back out.
+// along the normal, but for an overlap at the start that does not push; a centre that
+// has passed the surface is pushed back out.
 struct wall_geometry {
     struct vector normal; // unit, from the grain into the wall
     double overlap;
-    double arm;          // from the centre to the contact point
+    double arm; // from the centre to the contact point, halfway into what they share
     struct vector lever; // from the wall's point to the contact point
 };
 // OVERLAP < 0 apart.

@@ -40,6 +40,12 @@ static struct relative_position position_from_wall(const struct dem *dem, int i,
     return s;
 }
 
+// What the radius of a grain has lost.
+static double shrunk_by(const struct dem *dem, int i)
+{
+    return dem->shrinkage ? dem->first_radius[dem->id[i]] - dem->place[i].radius : 0;
+}
+
 // The part of A normal to the unit vector AXIS.
 static struct vector across(struct vector a, struct vector axis)
 {
@@ -55,20 +61,39 @@ static struct vector some_perpendicular(struct vector axis)
     return scale(1 / norm(found), found);
 }
 
-// The functions below return unit normals towards the wall and set *OVERLAP.
+// How far a grain reached beyond the wall at the start.
+struct start_overlap {
+    double counts; // given_overlap, less what the grain has shrunk by since
+    double rests;  // of it what does not push
+};
 
-static struct vector plane_contact(const struct dem *dem, const struct dem_wall *wall,
-                                   const struct relative_position *s, double radius,
-                                   double *overlap)
+// REACHED by the radius that the grain had then.
+static struct start_overlap start_overlap(const struct dem *dem, int i, double reached)
 {
-    *overlap = given_overlap(dem, radius - dot(s->start, wall->normal)) -
-               dot(s->moved, wall->normal);
+    const double given = given_overlap(dem, reached);
+    return (struct start_overlap){given - shrunk_by(dem, i),
+                                  dem->unstressed ? fmax(reached, 0) : 0};
+}
+
+// The functions below return unit normals towards the wall and set *OVERLAP, the first
+// two also *RESTS, as above.
+
+static struct vector plane_contact(const struct dem *dem, int i,
+                                   const struct dem_wall *wall,
+                                   const struct relative_position *s, double radius,
+                                   double *overlap, double *rests)
+{
+    const struct start_overlap start =
+        start_overlap(dem, i, radius - dot(s->start, wall->normal));
+    *overlap = start.counts - dot(s->moved, wall->normal);
+    *rests = start.rests;
     return scale(-1, wall->normal);
 }
 
-static struct vector round_contact(const struct dem *dem, const struct dem_wall *wall,
+static struct vector round_contact(const struct dem *dem, int i,
+                                   const struct dem_wall *wall,
                                    const struct relative_position *s, double radius,
-                                   double *overlap)
+                                   double *overlap, double *rests)
 {
     const bool is_cylinder = wall->shape == DEM_CYLINDER;
     const struct vector axis = is_cylinder ? wall->normal : (struct vector){0, 0, 1};
@@ -79,8 +104,10 @@ static struct vector round_contact(const struct dem *dem, const struct dem_wall 
     // length - before, without cancellation
     const double stretch = sum > 0 ? dot(moved, add(start, now)) / sum : 0;
     const double sign = wall->outside ? -1 : 1;
-    *overlap =
-        given_overlap(dem, radius + sign * (before - wall->radius)) + sign * stretch;
+    const struct start_overlap reached =
+        start_overlap(dem, i, radius + sign * (before - wall->radius));
+    *overlap = reached.counts + sign * stretch;
+    *rests = reached.rests;
     return length > 0 ? scale(sign / length, now)
                       : scale(sign, some_perpendicular(axis));
 }
@@ -133,18 +160,21 @@ static struct vector block_contact(const struct dem_wall *wall,
 struct wall_geometry wall_geometry(const struct dem *dem, int i, int w, double back)
 {
     const struct dem_wall *wall = &dem->wall[w].is;
-    const double radius = dem->place[i].radius;
+    const double radius = dem->place[i].radius, first = radius + shrunk_by(dem, i);
     const struct relative_position s = position_from_wall(dem, i, w, back);
     struct wall_geometry contact;
+    double rests = 0;
     if (wall->shape == DEM_PLANE)
-        contact.normal = plane_contact(dem, wall, &s, radius, &contact.overlap);
+        contact.normal =
+            plane_contact(dem, i, wall, &s, first, &contact.overlap, &rests);
     else if (wall->shape == DEM_RING)
         contact.normal = ring_contact(wall, &s, radius, &contact.overlap);
     else if (wall->shape == DEM_BLOCK)
         contact.normal = block_contact(wall, &s, radius, &contact.overlap);
     else
-        contact.normal = round_contact(dem, wall, &s, radius, &contact.overlap);
-    contact.arm = radius - 0.5 * contact.overlap;
+        contact.normal =
+            round_contact(dem, i, wall, &s, first, &contact.overlap, &rests);
+    contact.arm = radius - 0.5 * (contact.overlap + rests);
     contact.lever = add(s.now, scale(contact.arm, contact.normal));
     return contact;
 }

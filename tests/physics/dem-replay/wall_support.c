@@ -41,12 +41,22 @@ static struct packing tripod(void)
 
 static const uint8_t free_all[N] = {0};
 
+// The tripod, let SUNK radii of its largest grain into the wall.
+static struct packing sunk_tripod(double sunk)
+{
+    struct packing packing = tripod();
+    for (int i = 0; i < N; i++)
+        packing.position[i].z -= sunk * RADIUS;
+    return packing;
+}
+
 static struct quasi_static_setup setup_of(const struct packing *packing)
 {
     return (struct quasi_static_setup){
         .packing = packing,
         .fixed = free_all,
         .has_wall = true,
+        .unstressed = true,
         .material = {.normal_stiffness = 300, .shear_stiffness = 200, .friction = 1e6},
         .bond = {.normal_stiffness = 2e15,
                  .shear_stiffness = 1e15,
@@ -95,6 +105,7 @@ static void cycles_to_rest(const struct packing *packing, double size, int steps
                               .material = as.material,
                               .bond = as.bond,
                               .fixed = free_all,
+                              .unstressed = as.unstressed,
                               .n_wall = 1,
                               .wall = &wall,
                               .time_step_safety = 0.02,
@@ -120,9 +131,9 @@ static void cycles_to_rest(const struct packing *packing, double size, int steps
 }
 
 // How far both are apart, of the furthest way; displacements of up to DEPTH radii.
-static double error_of(double size, int steps, bool large, double *depth)
+static double error_of(double size, int steps, bool large, double sunk, double *depth)
 {
-    struct packing packing = tripod();
+    struct packing packing = sunk_tripod(sunk);
     struct quasi_static_setup setup = setup_of(&packing);
     setup.large_displacements = large;
     struct quasi_static *equilibrium = make_equilibrium(&setup);
@@ -150,7 +161,7 @@ static double error_of(double size, int steps, bool large, double *depth)
 TEST(small_displacements)
 {
     double depth;
-    const double error = error_of(1e-13, 200, false, &depth);
+    const double error = error_of(1e-13, 200, false, 0, &depth);
     print_message("# moved by %g radii: engines %g apart\n", depth, error);
     assert_true(error < 1e-6);
 }
@@ -158,8 +169,51 @@ TEST(small_displacements)
 TEST(large_displacements)
 {
     double depth;
-    const double error = error_of(2e-6, 2000, true, &depth);
+    const double error = error_of(2e-6, 2000, true, 0, &depth);
     print_message("# moved by %g radii: engines %g apart\n", depth, error);
     assert_true(depth > 0.02);
     assert_true(error < 1e-5);
+}
+
+// The contact point is halfway into what wall and grain share, also where that does not
+// push.
+TEST(grains_that_reach_into_the_wall)
+{
+    double depth;
+    const double error = error_of(1e-13, 200, false, 0.2, &depth);
+    print_message("# moved by %g radii: engines %g apart\n", depth, error);
+    assert_true(error < 1e-6);
+}
+
+// Each comes down by what its radius loses, as grains do that only touch the wall.
+TEST(shrinks_on_the_wall)
+{
+    struct packing packing = sunk_tripod(0.05);
+    packing.n_bond = 0;
+    const struct quasi_static_setup as = setup_of(&packing);
+    const struct dem_wall wall = {.point = packing.lower, .normal = {0, 0, 1}};
+    struct dem_setup setup = {.packing = &packing,
+                              .material = as.material,
+                              .unstressed = true,
+                              .shrinks = true,
+                              .n_wall = 1,
+                              .wall = &wall,
+                              .time_step_safety = 0.02,
+                              .threads = 1};
+    setup.material.density = 3230;
+    setup.material.local_damping = 0.7;
+    struct dem *dem = create(&setup);
+    const double shrinkage[N] = {0.01, 0.02, 0.03}, pressure = 1e-12;
+    struct vector force[N], moved[N];
+    for (int i = 0; i < N; i++)
+        force[i] = (struct vector){0, 0, -pressure};
+    dem_set_force(dem, force);
+    dem_set_shrinkage(dem, shrinkage);
+    settle(dem, 1e-9);
+    dem_displacements(dem, moved);
+    for (int i = 0; i < N; i++)
+        assert_within(moved[i].z, -shrinkage[i] * packing.radius[i] - pressure / 300,
+                      1e-9 * RADIUS);
+    dem_free(dem);
+    packing_free(&packing);
 }
