@@ -17,6 +17,7 @@
 #include "splitting/splitting.h"
 
 #include "basics/memory.h"
+#include "geometry/neighbours.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -61,13 +62,65 @@ static void find_diagonals(struct quasi_static *qs)
     if (!qs->setup.large_displacements) qs->grain_dashpot = 0.03 * softest;
 }
 
+// Each pair must be near in one image only: twice the longest distance at which two
+// grains are a pair, as in the engine of cycles.
+static enum status check_periods(const struct packing *packing, struct reason *reason)
+{
+    double largest = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        largest = fmax(largest, packing->radius[i]);
+    const double least = 2 * (1 + SEARCH_RANGE) * 2 * largest;
+    for (int axis = 0; axis < 3; axis++) {
+        const double period =
+            component(packing->upper, axis) - component(packing->lower, axis);
+        if (packing->periodic[axis] && !(period >= least))
+            return refuse(reason, STATUS_BAD_DATA,
+                          "periodic box is %g m along %c, needs at least %g m", period,
+                          "xyz"[axis], least);
+    }
+    return STATUS_OK;
+}
+
+static int count_joined_pairs(const struct packing *packing)
+{
+    int32_t(*pair)[2] = duplicate(packing->bond, (size_t)packing->n_bond, sizeof *pair);
+    int count = 0;
+    if (packing->n_bond > 0)
+        qsort(pair, (size_t)packing->n_bond, sizeof *pair, compare_pairs);
+    for (int b = 0; b < packing->n_bond; b++)
+        count += b == 0 || compare_pairs(pair[b - 1], pair[b]) != 0;
+    free(pair);
+    return count;
+}
+
+// As the engine of cycles: a pair has one bond at most, and a direction.
+static enum status check_pairs(const struct quasi_static *qs, struct reason *reason)
+{
+    const double *radius = qs->packing->radius;
+    const int n_joined = count_joined_pairs(qs->packing);
+    if (n_joined != qs->packing->n_bond)
+        return refuse(reason, STATUS_BAD_DATA, "%d bonds join only %d pairs of grains",
+                      qs->packing->n_bond, n_joined);
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        const int a = pair->grain[0], b = pair->grain[1];
+        if (b < 0) continue;
+        const double apart = qs->length * (pair->arm[0] + pair->arm[1]);
+        if (!(apart > 1e-9 * (radius[a] + radius[b])))
+            return refuse(reason, STATUS_BAD_DATA, "grains %d and %d coincide", a, b);
+    }
+    return STATUS_OK;
+}
+
 enum status quasi_static_create(struct quasi_static **result,
                                 const struct quasi_static_setup *setup,
                                 struct reason *reason)
 {
-    struct quasi_static *qs = NEW_ARRAY(struct quasi_static, 1);
     const int n = setup->packing->n_particle;
     *result = NULL;
+    enum status status = check_periods(setup->packing, reason);
+    if (status) return status;
+    struct quasi_static *qs = NEW_ARRAY(struct quasi_static, 1);
     qs->packing = setup->packing;
     qs->setup = *setup;
     qs->n = n;
@@ -79,6 +132,12 @@ enum status quasi_static_create(struct quasi_static **result,
     }
     const struct contact_pair_setup pairs = pair_setup_of(qs);
     qs->pair = make_contact_pairs(&pairs, &qs->n_pair);
+    status = check_pairs(qs, reason);
+    if (status) {
+        free(qs->pair);
+        free(qs);
+        return status;
+    }
     struct displacement **const of_grains[] = {
         &qs->displacement, &qs->load, &qs->dashpot_force, &qs->residual, &qs->step,
         &qs->previous,     &qs->rhs};

@@ -54,8 +54,9 @@ struct quasi_static_setup {
 
 struct quasi_static;
 
-// The caller frees *RESULT with quasi_static_free. STATUS_BAD_DATA: nothing resists.
-// *RESULT is NULL then.
+// The caller frees *RESULT with quasi_static_free. STATUS_BAD_DATA: nothing resists,
+// a periodic box is too narrow for pairs to be near in one image only, grains coincide,
+// or bonds are listed twice. *RESULT is NULL then.
 enum status quasi_static_create(struct quasi_static **result,
                                 const struct quasi_static_setup *setup,
                                 struct reason *reason);

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, SCENE, done, ok, run, scratch_paths, sets
+from tap import BIN, SCENE, done, ok, refused, run, scratch_paths, sets
 
 RADIUS = 250e-9
 NECK = 0.5858 * RADIUS
@@ -146,6 +146,27 @@ with scratch_paths() as at:
         response = replay(name, "engine=quasi-static", *held)
         moved = response["snapshots/displacement"][0, 1, 2]
         ok(abs(moved / wanted - 1) < 1e-6, f"equilibria: a small grain meets another if that is {name}", moved / wanted)
+
+    # ---- what equilibria would take for another body is refused, as by cycles
+    def twice(file):
+        del file["bonds/particles"]
+        file["bonds/particles"] = np.array([[0, 1], [0, 1], [1, 2]], "i4")
+        file["bonds/particles"].attrs["units"] = "1"
+
+    def narrow(file):
+        file["domain/periodic"][:] = 1, 0, 0
+
+    def coincident(file):
+        file["particles/position"][2] = file["particles/position"][1]
+
+    for change, says in (twice, "3 bonds join only 2 pairs of grains"), (narrow, "periodic box is "), (
+            coincident, "grains 1 and 2 coincide"):
+        write_forces("bad", pull)
+        with h5py.File(at("bad"), "a") as forces:
+            change(forces)
+        for engine in "explicit", "quasi-static":
+            refused(f"{engine}: {says}", says, "dem-replay", "-p", SCENE, *sets(*COMMON, f"engine={engine}"),
+                    at("bad"), "-o", at("refused"))
 
     # ---- engine=auto
     for settings, engine in ((("friction=0",), "quasi-static"), (("friction=0.5",), "explicit"),
