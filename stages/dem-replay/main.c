@@ -116,6 +116,16 @@ static void choose_strengths(const struct replay_parameters *parameters,
     strengthen_substrate(parameters->substrate_strength, packing, settings);
 }
 
+// As held.walls refuses: through the seam the wall would push grains of both sides.
+static void check_wall(const struct replay_settings *settings,
+                       const struct packing *packing)
+{
+    if (settings->support == SUPPORT_WALL && packing->periodic[2])
+        die(STATUS_BAD_DATA,
+            "dem-replay.support: must not be wall in a box that is periodic along z, "
+            "which has no wall there");
+}
+
 // The caller frees what it gives to SETTINGS. Grains are held by PARAMETERS only with
 // support=fixed; otherwise the list is empty.
 static void choose_grains(const struct replay_parameters *parameters,
@@ -125,6 +135,7 @@ static void choose_grains(const struct replay_parameters *parameters,
     bond_grains(packing, (enum bonds_by)parameters->bonds_by, parameters->bond_gap);
     choose_engine(parameters, packing, settings);
     check_bonds(parameters, packing);
+    check_wall(settings, packing);
     struct fixed_grains held = parameters->held;
     if (settings->support != SUPPORT_FIXED)
         held =

@@ -168,6 +168,13 @@ with scratch_paths() as at:
             refused(f"{engine}: {says}", says, "dem-replay", "-p", SCENE, *sets(*COMMON, f"engine={engine}"),
                     at("bad"), "-o", at("refused"))
 
+    write_forces("bad", pull)
+    with h5py.File(at("bad"), "a") as forces:
+        forces["domain/periodic"][:] = 0, 0, 1
+    for engine in "explicit", "quasi-static":
+        refused(f"{engine}: a wall where the box repeats", "dem-replay.support: must not be wall", "dem-replay", "-p", SCENE,
+                *sets(*COMMON, f"engine={engine}", "support=wall"), at("bad"), "-o", at("refused"))
+
     # ---- engine=auto
     for settings, engine in ((("friction=0",), "quasi-static"), (("friction=0.5",), "explicit"),
                              (("friction=0", "support=wall"), "explicit"),
