@@ -12,10 +12,18 @@
 #include "geometry/net_load.h"
 #include "geometry/packing.h"
 
+// The axes along which a fragment is joined to an image of itself.
+struct repeats {
+    uint8_t along[3];
+};
+
 struct loose_grains {
     struct fragments fragments;
     bool *is_loose; // (n_particle) 0 or 1
     int n_loose;
+    struct vector *place; // (n_particle) m, of the packing, each loose fragment in one
+                          // piece where the box repeats
+    struct repeats *repeats; // (n_particle) of a loose fragment, by its lowest grain
 };
 
 struct loose_grains loose_init(int n_particle);

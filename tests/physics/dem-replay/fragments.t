@@ -75,6 +75,25 @@ with scratch_paths() as at:
     ok(away["keep", 4000] > 2 * away["keep", 2000] > 10 * away["unload", 4000],
        "with loose_grains=keep it flies", away)
 
+    # ---- the same in a row along x, which turns about z as well: it does not, also if the row goes on
+    # behind the side of a box that repeats
+    turned = np.zeros((4, 3, 3))
+    turned[:, 1:, 0], turned[:, 1:, 1] = (unit, 3 * unit), (unit, -unit)
+    write_forces("turned", turned)
+    side = 12 * RADIUS
+    for repeats in 0, 1:
+        with h5py.File(at("turned"), "a") as forces:
+            forces["domain/upper"][:] = forces["domain/lower"][:] + side
+            row = np.array([side - 3 * RADIUS, side - RADIUS, RADIUS if repeats else side + RADIUS])
+            forces["particles/position"][:] = forces["domain/lower"][:] + np.column_stack(
+                [row, np.full((3, 2), 5 * RADIUS)])
+            forces["domain/periodic"][:] = repeats, repeats, 0
+        response = replay("turned", "engine=explicit", *breaks, "bond.moment_contribution=0", "held.walls=[]",
+                          "held.grains=[0]", "loose_grains=unload", "snapshots=[0.5]")
+        left = response["snapshots/force"][-1, 1:] / unit
+        ok(response["cracks/bond"][:].tolist() == [0] and np.abs(left - [[-1, 0, 0], [1, 0, 0]]).max() < 1e-3,
+           f"a loose pair has no moment{' across a side that repeats' if repeats else ''}", left)
+
     # ---- equilibria: the pair leaves, and is said to bear nothing
     response = replay("pull", "engine=quasi-static", *breaks, "snapshots=[0.5]")
     listed, held_by = response["snapshots/force"][-1], response["history/reaction_force"][-1]
