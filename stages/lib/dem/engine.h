@@ -573,6 +573,12 @@ static inline double places_ahead(const struct dem *dem)
 // Coefficients of pair PAIR, its own or those of all.
 struct contact_law law_of_pair(const struct dem *dem, int pair);
 
+// What the radius of a grain has lost by shrinkage.
+static inline double shrunk_by(const struct dem *dem, int i)
+{
+    return dem->shrinkage ? dem->first_radius[dem->id[i]] - dem->place[i].radius : 0;
+}
+
 // An overlap at the start, as it counts: one within the rounding of coordinates is
 // none.
 static inline double given_overlap(const struct dem *dem, double overlap)

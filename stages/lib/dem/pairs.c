@@ -53,8 +53,9 @@ void set_pair_place(const struct dem *dem, struct pair_group *group, int lane)
     const double distance = norm(separation);
     group->distance[lane] = distance;
     group->inverse_distance[lane] = 1 / distance;
-    group->overlap[lane] =
-        given_overlap(dem, dem->place[i].radius + dem->place[j].radius - distance);
+    const double lost = shrunk_by(dem, i) + shrunk_by(dem, j);
+    const double radii = dem->place[i].radius + dem->place[j].radius + lost;
+    group->overlap[lane] = given_overlap(dem, radii - distance) - lost;
 }
 
 void set_pair_law(struct dem *dem, int pair)

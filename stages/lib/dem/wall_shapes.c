@@ -40,12 +40,6 @@ static struct relative_position position_from_wall(const struct dem *dem, int i,
     return s;
 }
 
-// What the radius of a grain has lost.
-static double shrunk_by(const struct dem *dem, int i)
-{
-    return dem->shrinkage ? dem->first_radius[dem->id[i]] - dem->place[i].radius : 0;
-}
-
 // The part of A normal to the unit vector AXIS.
 static struct vector across(struct vector a, struct vector axis)
 {

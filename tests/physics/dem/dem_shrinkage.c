@@ -253,3 +253,43 @@ TEST(threads_and_restart_keep_the_bytes)
         packing_free(&packing[k]);
     }
 }
+
+// One of two grains that overlap at the start, without pushing, is pressed on the other
+// again after both have shrunk and, FAR, it has been a grain's size away meanwhile: it
+// comes to rest where the surfaces, nearer by what they lost, meet.
+static double where_it_rests(bool far)
+{
+    static const uint8_t fixed[2] = {1, 0};
+    static const double e = 0.02, push = 1e-10;
+    struct packing packing = new_packing(2, 0);
+    for (int i = 0; i < 2; i++) {
+        packing.position[i] = (struct vector){1.9 * RADIUS * i, 0, 0};
+        packing.radius[i] = RADIUS;
+    }
+    struct dem_setup setup = shrinking_setup(&packing);
+    setup.fixed = fixed;
+    setup.material.local_damping = 0.7;
+    struct dem *dem = create(&setup);
+    shrink_all(dem, 2, e);
+    struct vector force[2] = {{0, 0, 0}, {push, 0, 0}},
+                  moved[2] = {{0, 0, 0}, {0, 0, 0}};
+    dem_set_force(dem, force);
+    while (far && moved[1].x < 2 * RADIUS) {
+        run(dem, 100);
+        dem_displacements(dem, moved);
+    }
+    force[1].x = -push;
+    dem_set_force(dem, force);
+    while (!(dem_unbalanced_ratio(dem) < 1e-9))
+        run(dem, 100);
+    dem_displacements(dem, moved);
+    dem_free(dem);
+    packing_free(&packing);
+    return moved[1].x + 2 * e * RADIUS + push / 10;
+}
+
+TEST(grains_that_come_back_meet_where_they_would_have)
+{
+    for (int far = 0; far < 2; far++)
+        assert_within(where_it_rests(far), 0, 1e-6 * RADIUS);
+}
