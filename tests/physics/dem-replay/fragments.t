@@ -166,6 +166,29 @@ with scratch_paths() as at:
         moved = response["snapshots/displacement"][0, 1, 2]
         ok(abs(moved / wanted - 1) < 1e-6, f"equilibria: a small grain meets another if that is {name}", moved / wanted)
 
+    # ---- a small grain that hangs between three on the wall, a twentieth of a radius above it
+    push = np.zeros((1, 4, 3))
+    push[0, :, 2] = -1e-6, -1e-6, -1e-6, -3e-9
+    write_forces("hung", push)
+    low = np.array([[0, 0, 1], [2, 0, 1], [1, math.sqrt(3), 1], [1, 1 / math.sqrt(3), 0.35]]) * RADIUS
+    with h5py.File(at("hung"), "a") as forces:
+        for name, values in (("particles/position", low), ("particles/radius", RADIUS * np.array([1, 1, 1, 0.3])),
+                             ("bonds/particles", np.array([[i, j] for i in range(4) for j in range(i + 1, 4)], "i4"))):
+            units = forces[name].attrs["units"]
+            del forces[name]
+            forces[name] = values
+            forces[name].attrs["units"] = units
+        forces["domain/lower"][:] = np.array([-1, -1, 0]) * RADIUS
+        forces["domain/upper"][:] = np.array([3, 3, 2]) * RADIUS
+    sunk = {}
+    for engine in "explicit", "quasi-static":
+        response = replay("hung", f"engine={engine}", "support=wall", "friction=0", "normal_stiffness=100", "snapshots=[1]",
+                          "bond.normal_stiffness=3e13", "bond.shear_stiffness=3e13", "bond.normal_strength=1e12",
+                          "bond.shear_strength=1e12", "quasi_static.large_displacements=false")
+        sunk[engine] = response["snapshots/displacement"][0, :, 2] / RADIUS
+    ok(-0.0515 < sunk["explicit"][3] < -0.05 and abs(sunk["quasi-static"][3] - sunk["explicit"][3]) < 1e-3,
+       "a small grain comes to rest on the wall, in equilibria as by cycles", sunk)
+
     # ---- what equilibria would take for another body is refused, as by cycles
     def twice(file):
         del file["bonds/particles"]
