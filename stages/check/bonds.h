@@ -17,7 +17,7 @@ struct bond_facts {
 // GAP is that at which one piece would have 95 % of the grains; searched up to 0.5.
 struct bond_facts bond_facts(const struct packing *packing);
 
-// Adds what these facts mean to FINDINGS. N: grains in all; BOTTOM: the height (m)
-// below which grains should be held. Nothing is said of fewer than two grains.
+// Adds to FINDINGS what these FACTS of bonds mean; PACKED are the other facts.
+// Nothing is said of fewer than two grains.
 void judge_bonds(const struct packing *packing, const struct packing_facts *packed,
                  const struct bond_facts *facts, struct findings *findings);
