@@ -115,6 +115,12 @@ static enum status check_liquid(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "saturation_step: must be above 0 and at most 1, is %g",
                       conditions->saturation_step);
+    if (conditions->flow_step > 0 &&
+        (conditions->kelvin || conditions->saturation_step < 1))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "flow_step: must be 0 with kelvin, or with a saturation_step "
+                      "below 1, which asks for more flows, not fewer; is %g",
+                      conditions->flow_step);
     return STATUS_OK;
 }
 

@@ -55,6 +55,8 @@ struct drying_conditions {
     // Viscous: conductances are renewed when a throat's saturation has changed by this,
     // in (0,1]; 1: only when a throat has emptied or filled, as K does.
     double saturation_step;
+    double flow_step; // viscous: share of its liquid that a cluster may lose until its
+                      // flow is found again, in [0,1); 0: found at each event
     double mass_transfer;    // beta, m/s; the boundary layer is delta/beta thick
     int layers;              // of the boundary layer; 0: as thick as a throat is long
     enum boundary_feet feet; // where its columns stand

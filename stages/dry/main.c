@@ -229,8 +229,9 @@ static int estimate(struct invocation *invocation,
     struct body_size body = input_size(invocation, parameters->open_walls);
     body.changes = recorded_changes(&body, conditions->step_interval);
     struct cost cost =
-        cost_of_drying(&body, parameters->liquid == LIQUID_VISCOUS, conditions->kelvin,
-                       !(conditions->vapour_tolerance > 0));
+        cost_of_drying(&body, conditions->kelvin, !(conditions->vapour_tolerance > 0));
+    if (parameters->liquid == LIQUID_VISCOUS)
+        cost = with_viscous_flow(cost, &body, flow_step(parameters, body.throats) > 0);
     cost =
         with_boundary_layer(cost, body.face, expected_layers(invocation, *parameters));
     if (parameters->rings != RINGS_NONE)

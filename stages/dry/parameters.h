@@ -44,5 +44,6 @@ extern const struct parameter dry_table[];
 enum status complete_conditions(struct dry_parameters *parameters,
                                 const struct network *network, struct reason *reason);
 
-// films.step, or its default in a network of so many THROATS.
+// films.step and flow_step, or their defaults in a network of so many THROATS.
 double film_step(const struct dry_parameters *parameters, double throats);
+double flow_step(const struct dry_parameters *parameters, double throats);

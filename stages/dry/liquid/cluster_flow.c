@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Chooses the solver of one cluster and checks its result: the updated factor first,
-// and if its balances do not close to FLOW_TOLERANCE, as with conductances many
+// and if its balances do not close to flow_tolerance, as with conductances many
 // decades apart, elimination without cancellation.
 //
 // list_ends puts the menisci that move first in `mover` (n_mover), then those that do
 // not move but whose pressure responds to their flow (to n_end). `error` is the largest
 // imbalance of a node over the largest flow; the factor that failed is freed, so that
-// the next step does not update it. Neither within FLOW_TOLERANCE: status 3.
+// the next step does not update it. Neither within flow_tolerance: status 3.
 #include "cluster_flow.h"
 
 #include <math.h>
@@ -29,20 +29,21 @@ enum status cluster_flow_solve(struct liquid_flow *flow,
                                struct cluster_problem *problem, struct reason *reason)
 {
     struct flow_solver *solver = flow->solver;
+    const double tolerance = flow_tolerance(flow);
     double error = INFINITY;
     list_ends(flow, problem);
     struct cluster_laplacian *graph = find_graph(flow, problem);
     if (graph) error = solve_cluster_cholesky(flow, problem, graph);
-    if (graph && !(error < FLOW_TOLERANCE)) {
+    if (graph && !(error < tolerance)) {
         free_graph(solver, &solver->cluster[problem->cluster]);
         list_nodes(flow, problem);
     }
-    if (!(error < FLOW_TOLERANCE)) error = solve_cluster_elimination(flow, problem);
-    if (!(error < FLOW_TOLERANCE))
+    if (!(error < tolerance)) error = solve_cluster_elimination(flow, problem);
+    if (!(error < tolerance))
         return refuse(reason, STATUS_NOT_CONVERGED,
                       "the liquid's balance closes to %.3g of its largest flow only, "
                       "needed is %g (%d unknowns)",
-                      error, FLOW_TOLERANCE, solver->n_node);
+                      error, tolerance, solver->n_node);
     flow->residual = fmax(flow->residual, error);
     return STATUS_OK;
 }

@@ -6,12 +6,9 @@
 
 #include "flow_solver.h"
 
-// Largest error of a node's balance, relative to the largest flow in its cluster.
-#define FLOW_TOLERANCE 1e-11
-
 // Finds the potentials of the nodes, the inflow of the menisci that flow->moving and
 // flow->response name, and problem->flow, the scale of the flows.
-// STATUS_NOT_CONVERGED if a balance does not close to FLOW_TOLERANCE.
+// STATUS_NOT_CONVERGED if a balance does not close to flow_tolerance.
 enum status cluster_flow_solve(struct liquid_flow *flow,
                                struct cluster_problem *problem, struct reason *reason);
 

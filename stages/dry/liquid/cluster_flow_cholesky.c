@@ -6,7 +6,8 @@
 // what stationary menisci take. Potentials are relative to the throat that gas enters
 // most easily: when that changes, all are shifted. Iterative refinement: residuals
 // come from potentials in two parts, each correction from the updated factor, at most
-// REFINEMENTS times.
+// REFINEMENTS times; from a rough factor where the cluster is very large and its flow
+// is not found at each event.
 #include "cluster_flow.h"
 
 #include "basics/memory.h"
@@ -15,7 +16,7 @@
 
 // A cluster of at least GRAPH_NODES nodes has a graph, which is made again when more
 // than MAX_LEFT_SHARE of its nodes have left.
-enum { GRAPH_NODES = 150, REFINEMENTS = 8 };
+enum { GRAPH_NODES = 150, ROUGH_NODES = 10000, REFINEMENTS = 8 };
 static const double MAX_LEFT_SHARE = 0.06;
 
 static int list_links(struct liquid_flow *flow, const struct cluster_problem *problem)
@@ -47,8 +48,9 @@ static bool make_graph(struct liquid_flow *flow, const struct cluster_problem *p
     for (int k = 0; k < n; k++)
         solver->site[solver->node[k]] = -1;
     int *row = NEW_ARRAY(int, n), *entry = NEW_ARRAY(int, n_link);
-    memory->graph =
-        cluster_laplacian_create(&solver->common, n, n_link, solver->link, row, entry);
+    const bool rough = flow->step > 0 && n >= ROUGH_NODES;
+    memory->graph = cluster_laplacian_create(&solver->common, n, n_link, solver->link,
+                                             rough, row, entry);
     if (memory->graph) {
         memory->node = NEW_ARRAY(int, n);
         for (int k = 0; k < n; k++) {
@@ -166,8 +168,9 @@ double solve_cluster_cholesky(struct liquid_flow *flow, struct cluster_problem *
     change_reference(flow, problem);
     set_boundary_conditions(flow, problem, graph);
     double error = graph_error(flow, problem, graph);
-    for (int k = 0; k < REFINEMENTS && !(error <= FLOW_TARGET); k++) {
-        const bool good = cluster_laplacian_correct(graph, FLOW_TARGET * problem->flow);
+    const double target = flow_target(flow);
+    for (int k = 0; k < REFINEMENTS && !(error <= target); k++) {
+        const bool good = cluster_laplacian_correct(graph, target * problem->flow);
         error = graph_error(flow, problem, graph);
         if (!good) break;
     }

@@ -7,10 +7,12 @@
 // have two parts (struct compensated): across a wide throat they differ by less than
 // the last digit of a double. A uniform rise of the whole cluster is taken out first
 // (level_potentials), the rest is solved by conjugate gradients, preconditioned with
-// the updated factor. Rows of nodes that have left stay, multiplied by present = 0.
+// the updated factor or a rough one. Rows of nodes that have left stay, multiplied by
+// present = 0.
 #include "cluster_laplacian.h"
 
 #include "basics/memory.h"
+#include "rough_factor.h"
 #include "sparse/conjugate_gradients.h"
 #include "updated_cholesky.h"
 
@@ -62,13 +64,18 @@ static void fill_rows(struct cluster_laplacian *graph, int n_link,
 struct cluster_laplacian *cluster_laplacian_create(cholmod_common *common, int n,
                                                    int n_link,
                                                    const struct graph_link *link,
-                                                   int *row, int *entry)
+                                                   bool rough, int *row, int *entry)
 {
-    if (!updated_cholesky_order(common, n, n_link, link, row)) return NULL;
+    if (!rough && !updated_cholesky_order(common, n, n_link, link, row)) return NULL;
+    for (int i = 0; rough && i < n; i++)
+        row[i] = i;
     struct cluster_laplacian *graph = NEW_ARRAY(struct cluster_laplacian, 1);
     allocate_rows(graph, n, n_link);
     fill_rows(graph, n_link, link, row, entry);
-    graph->factor = updated_cholesky_create(common, graph);
+    if (rough)
+        graph->rough = rough_factor_create(n);
+    else
+        graph->factor = updated_cholesky_create(common, graph);
     return graph;
 }
 
@@ -76,6 +83,7 @@ void cluster_laplacian_free(struct cluster_laplacian *graph)
 {
     if (!graph) return;
     updated_cholesky_free(graph->factor);
+    rough_factor_free(graph->rough);
     free(graph->present);
     free(graph->offset);
     free(graph->column);
@@ -95,7 +103,7 @@ void cluster_laplacian_set(struct cluster_laplacian *graph, int entry,
 {
     if (graph->conductance[entry] == conductance) return;
     graph->conductance[entry] = graph->conductance[graph->mirror[entry]] = conductance;
-    updated_cholesky_note(graph->factor, entry);
+    if (graph->factor) updated_cholesky_note(graph->factor, entry);
 }
 
 void cluster_laplacian_leave(struct cluster_laplacian *graph, int row)
@@ -149,15 +157,20 @@ double cluster_laplacian_residual(struct cluster_laplacian *graph)
     return isfinite(sum) ? largest : INFINITY;
 }
 
-static void multiply(void *context, const double *x, double *product)
+void cluster_laplacian_multiply(const struct cluster_laplacian *graph, const double *x,
+                                double *product)
 {
-    const struct cluster_laplacian *graph = context;
     for (int i = 0; i < graph->n; i++) {
         double sum = graph->ground[i] * x[i];
         for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
             sum += graph->conductance[k] * (x[i] - x[graph->column[k]]);
         product[i] = sum;
     }
+}
+
+static void multiply(void *context, const double *x, double *product)
+{
+    cluster_laplacian_multiply(context, x, product);
 }
 
 static void precondition(void *context, const double *residual, double *z)
@@ -187,8 +200,12 @@ static void level_potentials(struct cluster_laplacian *graph)
 
 bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance)
 {
-    if (!updated_cholesky_follow(graph->factor, graph)) return false;
+    if (graph->factor && !updated_cholesky_follow(graph->factor, graph)) return false;
     level_potentials(graph);
+    if (graph->rough) {
+        rough_factor_correct(graph->rough, graph, tolerance);
+        return true;
+    }
     double **scratch = updated_cholesky_scratch(graph->factor);
     const struct linear_problem problem = {
         graph->n, graph, multiply, precondition, {scratch[0], scratch[1], scratch[2]}};

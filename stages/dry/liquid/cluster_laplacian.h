@@ -3,8 +3,9 @@
 // conductance between them, and arms from nodes to menisci at given potentials.
 //
 // Its Cholesky factor follows the graph as it changes, by updates and downdates of rank
-// one (CHOLMOD), and preconditions conjugate gradients. Nodes that leave stay in the
-// factor as rows without links; when many have left, the graph should be made again.
+// one (CHOLMOD), and preconditions conjugate gradients; or the factor is a rough one.
+// Nodes that leave stay in the factor as rows without links; when many have left, the
+// graph should be made again.
 //
 // In node i:  residual_i = source_i + sum_j conductance_ij (potential_j - potential_i)
 //                          + sum over its arms of conductance (level - potential_i).
@@ -27,6 +28,7 @@ struct graph_arm {
 };
 
 struct updated_cholesky;
+struct rough_factor;
 
 // It owns its arrays but those of the caller.
 struct cluster_laplacian {
@@ -43,19 +45,20 @@ struct cluster_laplacian {
     double *source;
 
     int n_arm;
-    const struct graph_arm *arm; // (n_arm) as given last
-    double *residual;            // (n)
-    struct updated_cholesky *factor;
+    const struct graph_arm *arm;     // (n_arm) as given last
+    double *residual;                // (n)
+    struct updated_cholesky *factor; // one of the two, the other NULL
+    struct rough_factor *rough;
 };
 
 // N nodes and N_LINK links between them, of conductance 0 or more. ROW (n) becomes the
 // row of each node, ENTRY (n_link) one of the two places of each link. COMMON must live
-// as long. The caller frees the graph with cluster_laplacian_free. NULL if memory ran
-// out.
+// as long. ROUGH: with a rough factor. The caller frees the graph with
+// cluster_laplacian_free. NULL if memory ran out.
 struct cluster_laplacian *cluster_laplacian_create(cholmod_common *common, int n,
                                                    int n_link,
                                                    const struct graph_link *link,
-                                                   int *row, int *entry);
+                                                   bool rough, int *row, int *entry);
 
 // Gives the link at ENTRY another conductance, 0 or more. The factor follows by a
 // rank-one update.
@@ -74,6 +77,10 @@ void cluster_laplacian_set_arms(struct cluster_laplacian *graph, int n_arm,
 // Fills graph->residual: the source plus what flows in. Returns the largest absolute
 // value; INFINITY if any is not a number.
 double cluster_laplacian_residual(struct cluster_laplacian *graph);
+
+// PRODUCT (n) = (L + diag(ground)) X (n).
+void cluster_laplacian_multiply(const struct cluster_laplacian *graph, const double *x,
+                                double *product);
 
 // Corrects the potentials for graph->residual (overwritten), until the norm of the
 // residual is about TOLERANCE or conjugate gradients stop. False if the matrix is not

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 
 // Response times potential is a flow that cancels: this part of it enters the scale of
-// flows, so that its rounding is below FLOW_TARGET of the scale.
+// flows, so that its rounding is below flow_target of the scale.
 static const double ROUNDING_SHARE = 1e-2;
 
 // --- one throat, one cluster ---------------------------------------------------------
@@ -88,6 +88,17 @@ double node_potential(const struct flow_solver *solver, int cluster, int node)
     const struct cluster_laplacian *graph = solver->cluster[cluster].graph;
     return compensated_value(graph ? graph->potential[solver->row[node]]
                                    : solver->potential[node]);
+}
+
+double potential_of_ends(const struct liquid_flow *flow, int cluster, int throat,
+                         int *n)
+{
+    int end[2];
+    double mean = 0;
+    *n = liquid_ends(flow, throat, end);
+    for (int k = 0; k < *n; k++)
+        mean += node_potential(flow->solver, cluster, end[k]) / *n;
+    return mean;
 }
 
 int first_throat(const struct flow_solver *solver,
@@ -176,6 +187,7 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     reserve(solver, clusters->n_id);
     const int old = solver->members.cluster[throat];
     struct cluster_memory *memory = &solver->cluster[old];
+    memory->emptied += occupancy->volume[throat];
     const int32_t *node = occupancy->network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
         cut_node(solver, memory, node[end]);

@@ -11,9 +11,17 @@
 #include "sparse/cholmod_serial.h"
 #include "viscous.h"
 
-// Target of the error of a node's balance, relative to the largest flow in its cluster.
-// FLOW_TOLERANCE (cluster_flow.h) is what is still accepted.
-static const double FLOW_TARGET = 5e-13;
+// Target of the error of a node's balance, relative to the largest flow in its cluster;
+// and what is still accepted. A flow that is kept for a while need not be exact.
+static inline double flow_target(const struct liquid_flow *flow)
+{
+    return flow->step > 0 ? 1e-6 : 5e-13;
+}
+
+static inline double flow_tolerance(const struct liquid_flow *flow)
+{
+    return flow->step > 0 ? 1e-4 : 1e-11;
+}
 
 // What is known of a cluster from previous steps. It owns .graph and .node. Identities
 // of clusters are given out again, so flow_solver_follow must see every event.
@@ -24,6 +32,9 @@ struct cluster_memory {
                        // -1: there are no potentials
     double resistance; // at least that of all its throats in series,
     int size;          // when it had so many throats
+    // When its flow was last found: the volume of its liquid (0: it is to be found) and
+    // what evaporated; since then, the volume of the throats that have emptied.
+    double liquid, evaporation, emptied;
 };
 
 struct flow_solver {
@@ -100,6 +111,10 @@ double link_of_ends(const struct liquid_flow *flow, int throat);
 
 // Potential of NODE in CLUSTER, relative to the cluster's reference throat.
 double node_potential(const struct flow_solver *solver, int cluster, int node);
+
+// Mean potential of the liquid ends of THROAT in CLUSTER, *N of them; 0 for none.
+double potential_of_ends(const struct liquid_flow *flow, int cluster, int throat,
+                         int *n);
 
 // Lists the cluster's nodes in the solver's NODE.
 void list_nodes(struct liquid_flow *flow, const struct cluster_problem *problem);

@@ -10,11 +10,13 @@
 // pressures only, so it ends. loss = evaporation - inflow, negative where a throat
 // refills. Many clusters need no solution: if all that evaporates, through all throats
 // in series, drops the potential by less than the margin between the two easiest
-// menisci, only the easiest one moves (only_one_moves).
+// menisci, only the easiest one moves (only_one_moves). Others keep the flow found last
+// for a while (kept_flow.h).
 #include "viscous.h"
 
 #include "basics/memory.h"
 #include "cluster_flow.h"
+#include "kept_flow.h"
 #include "losses.h"
 
 #include <math.h>
@@ -30,11 +32,12 @@ enum { SELECTIVE_ROUNDS = 20 };
 static const double BEGIN_FRACTION = 0.9;
 
 struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double length,
-                                    struct menisci menisci)
+                                    double step, struct menisci menisci)
 {
     const struct network *network = occupancy->network;
     struct liquid_flow flow = {.network = network,
                                .menisci = menisci,
+                               .step = step,
                                .conductance = NEW_ARRAY(double, network->n_throat),
                                .resistance = NEW_ARRAY(double, network->n_throat),
                                .moving = NEW_ARRAY(bool, network->n_throat),
@@ -107,11 +110,8 @@ static double entry(const struct liquid_flow *flow,
 static double potential_at_mouth(const struct liquid_flow *flow,
                                  const struct cluster_problem *problem, int throat)
 {
-    int end[2];
-    const int n = liquid_ends(flow, throat, end);
-    double mean = 0;
-    for (int k = 0; k < n; k++)
-        mean += node_potential(flow->solver, problem->cluster, end[k]) / n;
+    int n;
+    const double mean = potential_of_ends(flow, problem->cluster, throat, &n);
     const double arm = n * meniscus_arm(flow, throat, n);
     const double alone = mean - flow->solver->evaporation[throat] / arm;
     if (!flow->response) return alone;
@@ -126,7 +126,7 @@ static bool must_stop(const struct liquid_flow *flow,
 {
     return is_full(flow, throat) &&
            flow->solver->evaporation[throat] - flow->solver->inflow[throat] <
-               -FLOW_TARGET * problem->flow;
+               -flow_target(flow) * problem->flow;
 }
 
 // Initial guess: menisci that moved before, those in throats partly empty, and if there
@@ -366,11 +366,17 @@ static enum status find_losses(struct liquid_flow *flow,
     const bool decided = only_one_moves(flow, problem);
     if (decided && (problem->n_throat == 1 || !flow->wants_pressures)) {
         move_reference(flow, problem);
+        flow->solver->cluster[problem->cluster].liquid = 0; // no flow to keep
         add_loss(loss, n_loss, problem->reference, problem->evaporation);
+        return STATUS_OK;
+    }
+    if (!flow->wants_pressures && kept_flow_goes_on(flow, problem)) {
+        collect_losses(flow, problem, loss, n_loss);
         return STATUS_OK;
     }
     const enum status status = find_menisci(flow, problem, reason);
     if (status) return status;
+    if (flow->step > 0) kept_flow_note(flow, problem);
     collect_losses(flow, problem, loss, n_loss);
     if (flow->wants_pressures) write_pressures(flow, problem, false);
     flow->solutions++;

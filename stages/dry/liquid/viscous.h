@@ -25,6 +25,8 @@ struct flow_solver; // what is kept from step to step, and room to solve in
 struct liquid_flow {
     const struct network *network;
     struct menisci menisci;
+    double step; // share of its liquid that a cluster may lose until its flow is found
+                 // again; 0: none
     double *conductance; // (n_throat) of a full throat, scaled
     double *resistance;  // (n_throat) its inverse
     bool *moving;        // (n_throat) its meniscus, when last solved for
@@ -41,10 +43,10 @@ struct liquid_flow {
     struct flow_solver *solver;
 };
 
-// For a network full of liquid. Takes over MENISCI. The caller frees it with
-// liquid_flow_free.
+// For a network full of liquid. STEP as above. Takes over MENISCI. The caller frees it
+// with liquid_flow_free.
 struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double length,
-                                    struct menisci menisci);
+                                    double step, struct menisci menisci);
 
 // THROAT has emptied, and OCCUPANCY has followed.
 void liquid_flow_follow(struct liquid_flow *flow, const struct occupancy *occupancy,

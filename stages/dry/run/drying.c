@@ -118,9 +118,9 @@ static void prepare(struct run *run)
     const bool is_viscous = run->conditions->liquid == LIQUID_VISCOUS;
     const bool has_kelvin = run->conditions->kelvin;
     if (is_viscous)
-        run->flow =
-            liquid_flow_init(&run->occupancy, run->scale.length,
-                             menisci_init(network, run->conditions, &run->scale));
+        run->flow = liquid_flow_init(
+            &run->occupancy, run->scale.length, run->conditions->flow_step,
+            menisci_init(network, run->conditions, &run->scale));
     if (has_kelvin) run->kelvin = kelvin_menisci_init(&run->occupancy, run->conditions);
     if (is_viscous && has_kelvin)
         run->coupling = kelvin_viscous_init(&run->kelvin, &run->flow);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One visitor, run_state, both keeps and restores, so that the two cannot differ. What
 // is kept only for speed (factors, graphs) is not in the state: it is forgotten every
-// STEPS_BETWEEN_CUTS steps, in runs with and without checkpoints alike, so that a run
+// steps_between_cuts steps, in runs with and without checkpoints alike, so that a run
 // that continues makes the same bytes.
 //
 // Order: time and sums, the history, occupancy (with vapour and clusters), what has
@@ -22,8 +22,12 @@
 
 #include <limits.h>
 
-// Forgetting costs a factorisation, as much as some ten steps.
-enum { STEPS_BETWEEN_CUTS = 256 };
+// Forgetting costs a flow in each cluster from scratch, as much as some ten steps; or
+// as a thousand, where flows are kept from step to step.
+static int steps_between_cuts(const struct run *run)
+{
+    return run->conditions->flow_step > 0 ? 8192 : 256;
+}
 
 // Rows of snapshots that are still to come are not kept. While restoring, room is made
 // for all of them, as keep_pressures does at the first.
@@ -108,7 +112,7 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     const struct film_supply *films = run->times.films;
     if (films && !film_supply_may_be_kept(films)) return;
-    if (run->n_flow_step % STEPS_BETWEEN_CUTS != 0) return;
+    if (run->n_flow_step % steps_between_cuts(run) != 0) return;
     if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->occupancy);
     if (run->conditions->kelvin) kelvin_menisci_forget(&run->kelvin);

@@ -8,7 +8,8 @@
 //     tessellation     a n
 //     merging          a N
 //     drying           N (a + b m + d m^2) + e c       d m^2: products of links, of
-//                      floats with a tolerance; viscous: N^2
+//                      floats with a tolerance
+//     viscous flow     a N^2.4; kept for a while: b N^2
 //     rings            a N; films: b N^1.45 / step^0.45, at each event c N^2
 //     forces           a N + e c + f n L
 //     cycles           g n (ramp + L cycles)
@@ -114,13 +115,11 @@ struct cost cost_of_merging(const struct body_size *body)
                   THROAT_BYTES * body->throats);
 }
 
-struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
-                           bool exact)
+struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact)
 {
     const double throats = body->throats, front = 2 * body->face;
     const double links = front * front * (exact ? 5e-12 : 2.5e-12);
     double seconds = throats * (2e-6 + 9e-9 * front + links) + 1.2e-7 * body->changes;
-    if (flows) seconds += 1.4e-9 * pow(throats, 2.4);
     if (kelvin) seconds += 2.4e-10 * pow(throats, 2.65);
     const double mebibytes =
         5.5e-4 * throats +
@@ -128,6 +127,17 @@ struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin
     return writes(kelvin ? within(seconds, 5, 100, mebibytes)
                          : cost_of(seconds, mebibytes),
                   THROAT_BYTES * throats + 12 * body->changes);
+}
+
+struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
+                              bool kept)
+{
+    const double flow = kept ? 3.8e-8 * body->throats * body->throats
+                             : 1.4e-9 * pow(body->throats, 2.4);
+    drying.seconds += flow;
+    drying.least += flow / 3;
+    drying.most += 3 * flow;
+    return drying;
 }
 
 struct cost with_rings(struct cost drying, const struct body_size *body, bool films,

@@ -50,10 +50,13 @@ struct cost cost_of_packing(double grains, enum moving moving);
 struct cost cost_of_tessellation(double grains);
 struct cost cost_of_merging(const struct body_size *body);
 
-// With the rows of BODY recorded. FLOWS: viscous liquid. KELVIN: menisci lower the
-// vapour pressure. EXACT: without a tolerance.
-struct cost cost_of_drying(const struct body_size *body, bool flows, bool kelvin,
-                           bool exact);
+// With the rows of BODY recorded. KELVIN: menisci lower the vapour pressure. EXACT:
+// without a tolerance.
+struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact);
+
+// What the flow of viscous liquid adds, found at each event, or KEPT for a while.
+struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
+                              bool kept);
 
 // What rings around contacts add to a drying, and with FILMS the flow in films, found
 // again when the saturation has fallen by STEP; 0: at each event.

@@ -184,7 +184,7 @@ static void solve_cluster_cholesky(const struct sample *sample, double *flow)
         if (k % 2) link[k].conductance = 0.5;
     }
     struct cluster_laplacian *graph = cluster_laplacian_create(
-        &common, NODES, sample->n_link - ENDS, link, row, entry);
+        &common, NODES, sample->n_link - ENDS, link, false, row, entry);
     for (int i = 0; i < NODES; i++)
         graph->source[row[i]] = -sample->extracted[i];
     for (int e = 0; e < ENDS; e++) {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rows of nodes that have left have no links; each is tied to the ground, so that the
+// factor exists. The right side is scaled to norm 1, because the factor holds floats.
+#include "rough_factor.h"
+
+#include "basics/memory.h"
+#include "elimination/approximate_cholesky.h"
+#include "sparse/conjugate_gradients.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+// A factor that takes SLOWER times as many steps as at first, and a few more, is made
+// anew: that costs as much as about ten steps.
+enum { MOST_STEPS = 300, FEW = 5, ARRAYS = 4 };
+static const double SLOWER = 1.3;
+
+struct rough_factor {
+    struct approximate_cholesky *factor; // NULL: to be made
+    int fewest;                          // steps that it has taken
+    double *array[ARRAYS];               // (n)
+};
+
+struct rough_factor *rough_factor_create(int n)
+{
+    struct rough_factor *rough = NEW_ARRAY(struct rough_factor, 1);
+    for (int k = 0; k < ARRAYS; k++)
+        rough->array[k] = NEW_ARRAY(double, n);
+    return rough;
+}
+
+static void forget(struct rough_factor *rough)
+{
+    approximate_cholesky_free(rough->factor);
+    rough->factor = NULL;
+}
+
+void rough_factor_free(struct rough_factor *rough)
+{
+    if (!rough) return;
+    forget(rough);
+    for (int k = 0; k < ARRAYS; k++)
+        free(rough->array[k]);
+    free(rough);
+}
+
+static struct conductance_matrix matrix_of(const struct cluster_laplacian *graph)
+{
+    const int n = graph->n;
+    int n_link = 0;
+    struct link *link = NEW_ARRAY(struct link, graph->offset[n] / 2 + n);
+    for (int i = 0; i < n; i++) {
+        const bool present = graph->present[i] != 0;
+        const double ground = present ? graph->ground[i] : 1;
+        if (ground > 0) link[n_link++] = (struct link){{i, n}, ground};
+        for (int k = graph->offset[i]; present && k < graph->offset[i + 1]; k++)
+            if (graph->column[k] > i && graph->conductance[k] > 0)
+                link[n_link++] =
+                    (struct link){{i, graph->column[k]}, graph->conductance[k]};
+    }
+    const struct conductance_matrix matrix =
+        conductance_matrix_of_links(n, n + 1, n_link, link);
+    free(link);
+    return matrix;
+}
+
+static void make(struct rough_factor *rough, const struct cluster_laplacian *graph)
+{
+    struct conductance_matrix matrix = matrix_of(graph);
+    rough->factor = approximate_cholesky_create(&matrix);
+    rough->fewest = MOST_STEPS;
+    conductance_matrix_free(&matrix);
+}
+
+static void multiply(void *context, const double *x, double *product)
+{
+    cluster_laplacian_multiply(context, x, product);
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    const struct cluster_laplacian *graph = context;
+    approximate_cholesky_apply(graph->rough->factor, residual, z);
+    for (int i = 0; i < graph->n; i++)
+        z[i] *= graph->present[i];
+}
+
+void rough_factor_correct(struct rough_factor *rough, struct cluster_laplacian *graph,
+                          double tolerance)
+{
+    const int n = graph->n;
+    double *residual = graph->residual, *const *array = rough->array;
+    const double size = sqrt(sum_of_products(residual, residual, n));
+    if (!(size > 0)) return;
+    if (!rough->factor) make(rough, graph);
+    const struct linear_problem problem = {
+        n, graph, multiply, precondition, {array[0], array[1], array[2]}};
+    for (int i = 0; i < n; i++)
+        residual[i] /= size;
+    const int steps =
+        conjugate_gradients(&problem, residual, array[3], tolerance / size, MOST_STEPS);
+    for (int i = 0; i < n; i++)
+        compensated_add(&graph->potential[i], size * array[3][i]);
+    if (steps < rough->fewest) rough->fewest = steps;
+    if (steps > SLOWER * rough->fewest + FEW) forget(rough);
+}
