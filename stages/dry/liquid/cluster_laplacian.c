@@ -19,8 +19,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-// If conjugate gradients take more steps than this, the factor has become inaccurate.
-enum { MAX_STEPS = 30 };
+// If conjugate gradients take more steps than this, the factor has become inaccurate. A
+// rough one takes more from the start.
+enum { MAX_STEPS = 30, MAX_ROUGH_STEPS = 300 };
 
 // --- the rows ------------------------------------------------------------------------
 
@@ -157,9 +158,9 @@ double cluster_laplacian_residual(struct cluster_laplacian *graph)
     return isfinite(sum) ? largest : INFINITY;
 }
 
-void cluster_laplacian_multiply(const struct cluster_laplacian *graph, const double *x,
-                                double *product)
+static void multiply(void *context, const double *x, double *product)
 {
+    const struct cluster_laplacian *graph = context;
     for (int i = 0; i < graph->n; i++) {
         double sum = graph->ground[i] * x[i];
         for (int k = graph->offset[i]; k < graph->offset[i + 1]; k++)
@@ -168,15 +169,13 @@ void cluster_laplacian_multiply(const struct cluster_laplacian *graph, const dou
     }
 }
 
-static void multiply(void *context, const double *x, double *product)
-{
-    cluster_laplacian_multiply(context, x, product);
-}
-
 static void precondition(void *context, const double *residual, double *z)
 {
     const struct cluster_laplacian *graph = context;
-    updated_cholesky_solve(graph->factor, residual, z);
+    if (graph->rough)
+        rough_factor_apply(graph->rough, residual, z);
+    else
+        updated_cholesky_solve(graph->factor, residual, z);
     for (int i = 0; i < graph->n; i++)
         z[i] *= graph->present[i];
 }
@@ -198,23 +197,49 @@ static void level_potentials(struct cluster_laplacian *graph)
     }
 }
 
+static bool follow(struct cluster_laplacian *graph)
+{
+    if (graph->factor) return updated_cholesky_follow(graph->factor, graph);
+    rough_factor_follow(graph->rough, graph);
+    return true;
+}
+
+// What is left, and the steps that it took, tell whether the factor is still good.
+static void judge_factor(struct cluster_laplacian *graph, int steps, double tolerance)
+{
+    if (graph->rough)
+        rough_factor_took(graph->rough, steps);
+    else if (!(sqrt(sum_of_products(graph->residual, graph->residual, graph->n)) <=
+               tolerance))
+        updated_cholesky_forget(graph->factor);
+}
+
+// A rough factor holds floats: the residual is scaled for it.
+static double scale_of(const struct cluster_laplacian *graph)
+{
+    if (graph->factor) return 1;
+    const double norm =
+        sqrt(sum_of_products(graph->residual, graph->residual, graph->n));
+    return norm > 0 ? norm : 1;
+}
+
 bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance)
 {
-    if (graph->factor && !updated_cholesky_follow(graph->factor, graph)) return false;
+    if (!follow(graph)) return false;
     level_potentials(graph);
-    if (graph->rough) {
-        rough_factor_correct(graph->rough, graph, tolerance);
-        return true;
-    }
-    double **scratch = updated_cholesky_scratch(graph->factor);
+    double **scratch = graph->rough ? rough_factor_scratch(graph->rough)
+                                    : updated_cholesky_scratch(graph->factor);
     const struct linear_problem problem = {
         graph->n, graph, multiply, precondition, {scratch[0], scratch[1], scratch[2]}};
     double *correction = scratch[3];
-    conjugate_gradients(&problem, graph->residual, correction, tolerance, MAX_STEPS);
-    if (!(sqrt(sum_of_products(graph->residual, graph->residual, graph->n)) <=
-          tolerance))
-        updated_cholesky_forget(graph->factor);
+    const double scale = scale_of(graph);
     for (int i = 0; i < graph->n; i++)
-        compensated_add(&graph->potential[i], correction[i]);
+        graph->residual[i] /= scale;
+    const int steps =
+        conjugate_gradients(&problem, graph->residual, correction, tolerance / scale,
+                            graph->rough ? MAX_ROUGH_STEPS : MAX_STEPS);
+    judge_factor(graph, steps, tolerance);
+    for (int i = 0; i < graph->n; i++)
+        compensated_add(&graph->potential[i], scale * correction[i]);
     return true;
 }

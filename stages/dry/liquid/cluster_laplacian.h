@@ -78,10 +78,6 @@ void cluster_laplacian_set_arms(struct cluster_laplacian *graph, int n_arm,
 // value; INFINITY if any is not a number.
 double cluster_laplacian_residual(struct cluster_laplacian *graph);
 
-// PRODUCT (n) = (L + diag(ground)) X (n).
-void cluster_laplacian_multiply(const struct cluster_laplacian *graph, const double *x,
-                                double *product);
-
 // Corrects the potentials for graph->residual (overwritten), until the norm of the
 // residual is about TOLERANCE or conjugate gradients stop. False if the matrix is not
 // positive definite to rounding.

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rows of nodes that have left have no links; each is tied to the ground, so that the
-// factor exists. The right side is scaled to norm 1, because the factor holds floats.
+// factor exists.
 #include "rough_factor.h"
 
 #include "basics/memory.h"
 #include "elimination/approximate_cholesky.h"
-#include "sparse/conjugate_gradients.h"
 
-#include <math.h>
+#include <limits.h>
 #include <stdlib.h>
 
 // A factor that takes SLOWER times as many steps as at first, and a few more, is made
 // anew: that costs as much as about ten steps.
-enum { MOST_STEPS = 300, FEW = 5, ARRAYS = 4 };
+enum { FEW = 5, ARRAYS = 4 };
 static const double SLOWER = 1.3;
 
 struct rough_factor {
@@ -64,43 +63,28 @@ static struct conductance_matrix matrix_of(const struct cluster_laplacian *graph
     return matrix;
 }
 
-static void make(struct rough_factor *rough, const struct cluster_laplacian *graph)
+void rough_factor_follow(struct rough_factor *rough,
+                         const struct cluster_laplacian *graph)
 {
+    if (rough->factor) return;
     struct conductance_matrix matrix = matrix_of(graph);
     rough->factor = approximate_cholesky_create(&matrix);
-    rough->fewest = MOST_STEPS;
+    rough->fewest = INT_MAX;
     conductance_matrix_free(&matrix);
 }
 
-static void multiply(void *context, const double *x, double *product)
+void rough_factor_apply(const struct rough_factor *rough, const double *b, double *z)
 {
-    cluster_laplacian_multiply(context, x, product);
+    approximate_cholesky_apply(rough->factor, b, z);
 }
 
-static void precondition(void *context, const double *residual, double *z)
+void rough_factor_took(struct rough_factor *rough, int steps)
 {
-    const struct cluster_laplacian *graph = context;
-    approximate_cholesky_apply(graph->rough->factor, residual, z);
-    for (int i = 0; i < graph->n; i++)
-        z[i] *= graph->present[i];
-}
-
-void rough_factor_correct(struct rough_factor *rough, struct cluster_laplacian *graph,
-                          double tolerance)
-{
-    const int n = graph->n;
-    double *residual = graph->residual, *const *array = rough->array;
-    const double size = sqrt(sum_of_products(residual, residual, n));
-    if (!(size > 0)) return;
-    if (!rough->factor) make(rough, graph);
-    const struct linear_problem problem = {
-        n, graph, multiply, precondition, {array[0], array[1], array[2]}};
-    for (int i = 0; i < n; i++)
-        residual[i] /= size;
-    const int steps =
-        conjugate_gradients(&problem, residual, array[3], tolerance / size, MOST_STEPS);
-    for (int i = 0; i < n; i++)
-        compensated_add(&graph->potential[i], size * array[3][i]);
     if (steps < rough->fewest) rough->fewest = steps;
     if (steps > SLOWER * rough->fewest + FEW) forget(rough);
+}
+
+double **rough_factor_scratch(struct rough_factor *rough)
+{
+    return rough->array;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Corrects the potentials of a large cluster by conjugate gradients with an approximate
-// factor (elimination/approximate_cholesky.h). An exact factor of a network in three
-// dimensions fills in: of 20,000 nodes it has 3 million numbers, and takes ten times as
-// long as this one and the iterations that it costs.
+// An approximate factor of the balances of a large cluster, as preconditioner
+// (elimination/approximate_cholesky.h). An exact one of a network in three dimensions
+// fills in: of 20,000 nodes it has 3 million numbers, and takes several times as long
+// as this one and the iterations that it costs.
 #pragma once
 
 #include "cluster_laplacian.h"
@@ -13,7 +13,16 @@ struct rough_factor;
 struct rough_factor *rough_factor_create(int n);
 void rough_factor_free(struct rough_factor *rough);
 
-// As cluster_laplacian_correct. The factor is made anew when conjugate gradients take
-// more steps than at first, as the graph has changed.
-void rough_factor_correct(struct rough_factor *rough, struct cluster_laplacian *graph,
-                          double tolerance);
+// Makes the factor of GRAPH unless there is one that is still good. O(n log n).
+void rough_factor_follow(struct rough_factor *rough,
+                         const struct cluster_laplacian *graph);
+
+// Solves for Z (n) with the right-hand side B (n), of norm 1 or so, as it holds floats.
+void rough_factor_apply(const struct rough_factor *rough, const double *b, double *z);
+
+// Conjugate gradients have taken so many STEPS with it: too many more than at first, as
+// the graph has changed, and the next _follow makes it anew.
+void rough_factor_took(struct rough_factor *rough, int steps);
+
+// Four arrays (n) that a solver may use between calls.
+double **rough_factor_scratch(struct rough_factor *rough);

@@ -46,7 +46,7 @@ int digits_of_origin(const struct packing_facts *facts)
         side = fmax(side, high - low);
     }
     if (!(farthest > side)) return 0;
-    return (int)fmin(12, ceil(log10(farthest / side)));
+    return (int)fmin(12, rint(log10(farthest / side)));
 }
 
 // ---- one after the other ------------------------------------------------------------
