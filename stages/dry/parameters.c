@@ -30,7 +30,7 @@ enum { MAX_THROATS_BY_FLOWS = 3000 };
 static const double FLOW_STEPS = 1e-2;
 
 // And for flow_step.
-enum { MAX_THROATS_BY_EACH_FLOW = 10000 };
+enum { MAX_THROATS_BY_EACH_FLOW = 20000 };
 
 #define AT(member) offsetof(struct dry_parameters, member)
 #define GIVEN AT(given)
@@ -85,7 +85,7 @@ const struct parameter dry_table[] = {
     {"flow_step", PARAMETER_NUMBER, "1", "null", AT(conditions.flow_step),
      BETWEEN(0, 0.5),
      .text = "viscous: share of its liquid that a cluster may lose until its flow is "
-             "found again; 0: found at each event; null: 0 up to 10,000 throats, 0.01 "
+             "found again; 0: found at each event; null: 0 up to 20,000 throats, 0.01 "
              "in larger networks, but 0 with kelvin or saturation_step"},
     {"open", PARAMETER_CHOICES, "1", "[\"+z\"]", AT(open_walls), .choices = WALLS,
      .text = "walls open to the drying air, any set; the others let nothing through"},
