@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Equilibria of settled grains of unequal size, with friction, as their bonds break: the loads
 # that Newton's method does not balance at once come to rest by steps in time. (With dashpots at
-# pairs alone, and never less than a hundredth of the stiffness, 54 of these 100 loads did not.)
+# pairs alone, and never less than a hundredth of the stiffness, 54 of 100 loads of another body did not.)
 import sys
 
 import h5py
@@ -12,7 +12,7 @@ from tap import done, ok, run, scratch_paths, sets
 
 at = scratch_paths()
 SIZES = sets("count=200", "radius=30e-6", "sizes.distribution=normal", "sizes.spread=0.2", "sizes.smallest=18e-6",
-             "sizes.largest=42e-6", "seed=2")
+             "sizes.largest=42e-6", "seed=1")
 BODY = sets("density=2500", "normal_stiffness=3.6e6", "shear_stiffness=3.6e6", "bond.normal_stiffness=6.7e12",
             "bond.shear_stiffness=6.7e12", "bond.normal_strength=6.2e4", "bond.shear_strength=6.2e4",
             "bond.radius_fraction=0.5", "held.lower=[-1,-1,-1]", "held.upper=[1,1,4.41e-5]", "engine=quasi-static")
