@@ -22,11 +22,11 @@
 
 #include <limits.h>
 
-// Forgetting costs a flow in each cluster from scratch, as much as some ten steps; or
-// as a thousand, where flows are kept from step to step.
+// Forgetting costs a flow in each cluster from scratch, as much as some ten steps;
+// where flows are kept, as some hundred, 1 to 3 % of the time so.
 static int steps_between_cuts(const struct run *run)
 {
-    return run->conditions->flow_step > 0 ? 8192 : 256;
+    return run->conditions->flow_step > 0 ? 1024 : 256;
 }
 
 // Rows of snapshots that are still to come are not kept. While restoring, room is made
