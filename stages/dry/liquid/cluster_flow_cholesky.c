@@ -15,7 +15,8 @@
 #include <stdlib.h>
 
 // A cluster of at least GRAPH_NODES nodes has a graph, which is made again when more
-// than MAX_LEFT_SHARE of its nodes have left.
+// than MAX_LEFT_SHARE of its nodes have left; one of ROUGH_NODES whose flow is kept has
+// a rough factor.
 enum { GRAPH_NODES = 150, ROUGH_NODES = 10000, REFINEMENTS = 8 };
 static const double MAX_LEFT_SHARE = 0.06;
 

@@ -123,5 +123,18 @@ void list_nodes(struct liquid_flow *flow, const struct cluster_problem *problem)
 int first_throat(const struct flow_solver *solver,
                  const struct cluster_problem *problem, enum throat_list list);
 
+// The same for its menisci.
+static inline int first_meniscus(const struct liquid_flow *flow,
+                                 const struct cluster_problem *problem)
+{
+    return first_throat(flow->solver, problem, LIST_MENISCI);
+}
+
+// The throat after THROAT on its list; -1: none.
+static inline int next_throat(const struct liquid_flow *flow, int throat)
+{
+    return flow->solver->members.next[throat];
+}
+
 // Frees the cluster's graph, if it has one; its potentials are kept in the solver.
 void free_graph(struct flow_solver *solver, struct cluster_memory *memory);

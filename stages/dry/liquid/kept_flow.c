@@ -23,17 +23,6 @@ static struct cluster_memory *memory_of(const struct liquid_flow *flow,
     return &flow->solver->cluster[problem->cluster];
 }
 
-static int first_meniscus(const struct liquid_flow *flow,
-                          const struct cluster_problem *problem)
-{
-    return first_throat(flow->solver, problem, LIST_MENISCI);
-}
-
-static int next_meniscus(const struct liquid_flow *flow, int throat)
-{
-    return flow->solver->members.next[throat];
-}
-
 static double loss_of(const struct liquid_flow *flow, int throat)
 {
     return flow->solver->evaporation[throat] - flow->solver->inflow[throat];
@@ -47,8 +36,7 @@ void kept_flow_note(const struct liquid_flow *flow,
     memory->evaporation = problem->evaporation;
     memory->liquid = memory->emptied = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = first_throat(solver, problem, l); t >= 0;
-             t = solver->members.next[t])
+        for (int t = first_throat(solver, problem, l); t >= 0; t = next_throat(flow, t))
             memory->liquid += compensated_value(solver->occupancy->liquid[t]);
 }
 
@@ -95,7 +83,7 @@ bool kept_flow_goes_on(struct liquid_flow *flow, const struct cluster_problem *p
     if (!has_changed_little(flow, problem)) return false;
     struct flow_solver *solver = flow->solver;
     double lost = 0, gained = 0;
-    for (int t = first_meniscus(flow, problem); t >= 0; t = next_meniscus(flow, t)) {
+    for (int t = first_meniscus(flow, problem); t >= 0; t = next_throat(flow, t)) {
         revise(flow, problem, t);
         const double loss = flow->moving[t] ? loss_of(flow, t) : 0;
         if (loss > 0)
@@ -105,7 +93,7 @@ bool kept_flow_goes_on(struct liquid_flow *flow, const struct cluster_problem *p
     }
     const double share = (problem->evaporation + gained) / lost;
     if (!(share > LEAST_SHARE && share < LARGEST_SHARE)) return false;
-    for (int t = first_meniscus(flow, problem); t >= 0; t = next_meniscus(flow, t))
+    for (int t = first_meniscus(flow, problem); t >= 0; t = next_throat(flow, t))
         if (flow->moving[t] && loss_of(flow, t) > 0)
             solver->inflow[t] = solver->evaporation[t] - share * loss_of(flow, t);
     return true;

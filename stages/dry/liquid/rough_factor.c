@@ -9,8 +9,8 @@
 #include <limits.h>
 #include <stdlib.h>
 
-// A factor that takes SLOWER times as many steps as at first, and a few more, is made
-// anew: that costs as much as about ten steps.
+// A factor is made again when steps with it are SLOWER times as many as at first, and a
+// FEW more. To make one takes as long as some forty steps.
 enum { FEW = 5, ARRAYS = 4 };
 static const double SLOWER = 1.3;
 

@@ -20,8 +20,8 @@ void rough_factor_follow(struct rough_factor *rough,
 // Solves for Z (n) with the right-hand side B (n), of norm 1 or so, as it holds floats.
 void rough_factor_apply(const struct rough_factor *rough, const double *b, double *z);
 
-// Conjugate gradients have taken so many STEPS with it: too many more than at first, as
-// the graph has changed, and the next _follow makes it anew.
+// Tells it how many STEPS conjugate gradients took. Where these are many more than at
+// first, the graph has changed: the next _follow makes another factor.
 void rough_factor_took(struct rough_factor *rough, int steps);
 
 // Four arrays (n) that a solver may use between calls.

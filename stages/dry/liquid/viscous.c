@@ -81,18 +81,6 @@ void liquid_flow_respond(struct liquid_flow *flow)
 
 // --- the menisci ---------------------------------------------------------------------
 
-static int first_meniscus(const struct liquid_flow *flow,
-                          const struct cluster_problem *problem)
-{
-    return cluster_members_first(&flow->solver->members, problem->cluster,
-                                 LIST_MENISCI);
-}
-
-static int next_throat(const struct liquid_flow *flow, int throat)
-{
-    return flow->solver->members.next[throat];
-}
-
 static bool is_full(const struct liquid_flow *flow, int throat)
 {
     return throat_is_full(flow->solver->occupancy, throat);
@@ -273,8 +261,7 @@ static double resistance_of(struct liquid_flow *flow,
     memory->size = problem->n_throat;
     memory->resistance = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
-        for (int t = cluster_members_first(&solver->members, problem->cluster, l);
-             t >= 0; t = next_throat(flow, t))
+        for (int t = first_throat(solver, problem, l); t >= 0; t = next_throat(flow, t))
             memory->resistance += flow->resistance[t];
     return memory->resistance;
 }

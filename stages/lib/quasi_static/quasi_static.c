@@ -93,7 +93,8 @@ static int count_joined_pairs(const struct packing *packing)
     return count;
 }
 
-// As the engine of cycles: a pair has one bond at most, and a direction.
+// A pair must have one bond at most, and a direction. The engine of cycles refuses the
+// same.
 static enum status check_pairs(const struct quasi_static *qs, struct reason *reason)
 {
     const double *radius = qs->packing->radius;

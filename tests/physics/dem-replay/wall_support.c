@@ -158,31 +158,31 @@ static double error_of(double size, int steps, bool large, double sunk, double *
     return error / most;
 }
 
-TEST(small_displacements)
+static void assert_engines_agree(double size, int steps, bool large, double sunk,
+                                 double least_depth, double tolerance)
 {
     double depth;
-    const double error = error_of(1e-13, 200, false, 0, &depth);
+    const double error = error_of(size, steps, large, sunk, &depth);
     print_message("# moved by %g radii: engines %g apart\n", depth, error);
-    assert_true(error < 1e-6);
+    assert_true(depth > least_depth);
+    assert_true(error < tolerance);
+}
+
+TEST(small_displacements)
+{
+    assert_engines_agree(1e-13, 200, false, 0, 0, 1e-6);
 }
 
 TEST(large_displacements)
 {
-    double depth;
-    const double error = error_of(2e-6, 2000, true, 0, &depth);
-    print_message("# moved by %g radii: engines %g apart\n", depth, error);
-    assert_true(depth > 0.02);
-    assert_true(error < 1e-5);
+    assert_engines_agree(2e-6, 2000, true, 0, 0.02, 1e-5);
 }
 
 // The contact point is halfway into what wall and grain share, also where that does not
 // push.
 TEST(grains_that_reach_into_the_wall)
 {
-    double depth;
-    const double error = error_of(1e-13, 200, false, 0.2, &depth);
-    print_message("# moved by %g radii: engines %g apart\n", depth, error);
-    assert_true(error < 1e-6);
+    assert_engines_agree(1e-13, 200, false, 0.2, 0, 1e-6);
 }
 
 // Each comes down by what its radius loses, as grains do that only touch the wall.
