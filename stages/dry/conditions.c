@@ -183,6 +183,17 @@ static enum status check_course(const struct drying_conditions *conditions,
                       "are curved (kelvin), is %g: with 0 the vapour is exact; a "
                       "tolerance goes with inviscid or immobile liquid, kelvin=false",
                       conditions->vapour_tolerance);
+    if (!(conditions->vapour_step >= 0 && conditions->vapour_step <= 0.5))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "vapour_step: must be from 0 to 0.5, is %g",
+                      conditions->vapour_step);
+    if (conditions->vapour_step > 0 &&
+        (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS ||
+         conditions->rings == RINGS_FILMS))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "vapour_step: must be 0 where liquid is viscous, menisci are "
+                      "curved (kelvin) or rings=films, is %g",
+                      conditions->vapour_step);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,
                       "step_interval: must be from 0 to 1, is %g",

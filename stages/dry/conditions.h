@@ -75,6 +75,9 @@ struct drying_conditions {
     // Largest sum of the errors in what the wet nodes evaporate, relative to the rate.
     // From 1e-6 on, links on large fronts are stored as floats. 0: exact.
     double vapour_tolerance;
+    // Share of the rate that may be on its way through the gas, which is also the
+    // largest sum of the errors, until the vapour is found again. 0: exact.
+    double vapour_step;
     // Decrease of the network's saturation from one recorded step to the next; 0: each
     // event is a step.
     double step_interval;

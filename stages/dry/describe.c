@@ -114,6 +114,15 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
             conditions->vapour_tolerance);
         append(text, size, line);
     }
+    if (conditions->vapour_step > 0) {
+        char line[160];
+        snprintf(
+            line, sizeof line,
+            "vapour found again when errors of what wet nodes evaporate may add up "
+            "to %.6g of the rate\n",
+            conditions->vapour_step);
+        append(text, size, line);
+    }
     if (conditions->rings == RINGS_ISOLATED)
         append(text, size,
                "rings stay at contacts as throats empty, exact bridges, and dry when "

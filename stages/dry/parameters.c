@@ -151,6 +151,12 @@ const struct parameter dry_table[] = {
      .text =
          "largest sum of the errors of evaporation, over the rate, 1e-6 or more: links "
          "between the nodes of large fronts are kept to seven digits; 0: exact"},
+    {"vapour_step", PARAMETER_NUMBER, "1", "0", AT(conditions.vapour_step),
+     BETWEEN(0, 0.5),
+     .text =
+         "largest sum of the errors of evaporation, over the rate, until the vapour "
+         "is found again in all of the gas (until then it changes only near nodes "
+         "that dry): for wide open faces, 0.1 or so; 0: at each event"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),
      .text = "fall of the saturation from one recorded step to the next; 0: every "

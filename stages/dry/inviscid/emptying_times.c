@@ -151,14 +151,26 @@ static void find_sources(struct emptying_times *times)
     }
 }
 
-// New rates after an event. ALL_CHANGED: a node has dried, so that what every other
-// node evaporates has changed; with films each event changes the flow in all.
-static void set_rates(struct emptying_times *times, bool all_changed)
+// What follows in the vapour from nodes that have dried: returns whether what every
+// other node evaporates has changed.
+static bool follow_vapour(struct emptying_times *times, bool has_dried)
 {
-    struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
-    for (int k = 0; k < mesh->n_reached_air; k++)
-        share_by_node(times, mesh->reached_air[k]);
-    mesh->n_reached_air = 0;
+    struct kept_vapour *kept = times->occupancy->vapour.kept;
+    if (!kept) return has_dried;
+    if (kept_vapour_follow(kept)) return true;
+    for (int k = 0; k < kept->n_gain; k++)
+        share_gain(times, kept->gain_site[k], kept->gain[kept->gain_site[k]]);
+    return false;
+}
+
+// New rates after an event, in which nodes may have dried. With films each event
+// changes the flow in all.
+static void set_rates(struct emptying_times *times, bool has_dried)
+{
+    const bool all_changed = follow_vapour(times, has_dried);
+    for (int k = 0; k < times->air->n_reached; k++)
+        share_by_node(times, times->air->reached[k]);
+    vapour_forget_reached(&times->occupancy->vapour);
     const bool all =
         all_changed || times->films || evaporation_shares_lack_digits(times);
     if (all) {
@@ -180,6 +192,7 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
     const int n = n_place_of(occupancy);
     struct emptying_times times = {
         .occupancy = occupancy,
+        .air = vapour_air(&occupancy->vapour),
         .by_throat = by_throat,
         .n_place = n,
         .share = NEW_ARRAY(struct evaporation_share, 2 * (size_t)n),
@@ -215,7 +228,7 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
         times.share_place[k] = -1;
     for (int k = 0; k < occupancy->n_wet; k++)
         share_by_node(&times, occupancy->wet[k]);
-    occupancy->vapour.mesh.n_reached_air = 0;
+    vapour_forget_reached(&occupancy->vapour);
     if (occupancy->film_law) times.films = film_supply_create(&times);
     set_rates(&times, true);
     return times;

@@ -23,9 +23,10 @@ struct film_supply;
 
 struct emptying_times {
     struct occupancy *occupancy;
-    bool by_throat;            // a reservoir for each throat; else for each cluster
-    int n_place;               // throats; with rings n_throat + n_node
-    struct film_supply *films; // NULL: none of finite resistance
+    const struct air_links *air; // what its nodes evaporate
+    bool by_throat;              // a reservoir for each throat; else for each cluster
+    int n_place;                 // throats; with rings n_throat + n_node
+    struct film_supply *films;   // NULL: none of finite resistance
 
     int n_share;
     struct evaporation_share *share; // (n_share) of nodes that are linked to the air

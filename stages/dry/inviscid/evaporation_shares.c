@@ -38,7 +38,7 @@ int timer_of(struct emptying_times *times, int owner)
 static double amount_of(const struct emptying_times *times,
                         const struct evaporation_share *share)
 {
-    return share->part * times->occupancy->vapour.mesh.air[share->air_place];
+    return share->part * times->air->conductance[share->air_place];
 }
 
 static void add_to_sum(struct emptying_times *times, int k, double amount)
@@ -83,8 +83,8 @@ static void add_share(struct emptying_times *times, int node, int incidence, int
     times->shares[timer]++;
     times->share_place[incidence] = times->n_share;
     times->share_incidence[times->n_share] = incidence;
-    times->share[times->n_share++] = (struct evaporation_share){
-        part, times->occupancy->vapour.mesh.air_place[node], timer};
+    times->share[times->n_share++] =
+        (struct evaporation_share){part, times->air->place[node], timer};
 }
 
 // What supplies the rings at NODE: themselves, or liquid that films join to them.
@@ -123,6 +123,18 @@ void share_by_node(struct emptying_times *times, int node)
         if (place < 0) continue;
         const struct evaporation_share *share = &times->share[place];
         add_to_sum(times, share->timer, amount_of(times, share));
+    }
+}
+
+void share_gain(struct emptying_times *times, int node, double gain)
+{
+    const struct incidence *incidence = &times->occupancy->incidence;
+    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++) {
+        const int place = times->share_place[k];
+        if (place < 0) continue;
+        const struct evaporation_share *share = &times->share[place];
+        mark_dirty(times, share->timer);
+        add_to_sum(times, share->timer, share->part * gain);
     }
 }
 
@@ -179,15 +191,14 @@ void evaporation_shares_state(struct emptying_times *times,
                               struct checkpoint_stream *stream)
 {
     const struct network *network = times->occupancy->network;
-    const struct kron_fronts *mesh = &times->occupancy->vapour.mesh;
     const int n_incidence = 2 * network->n_throat;
     stream_integer(stream, &times->n_share, 0, n_incidence);
     for (int k = 0; k < times->n_share; k++) {
         struct evaporation_share *share = &times->share[k];
         stream_numbers(stream, &share->part, 1);
-        int node = stream->restoring ? 0 : mesh->air_site[share->air_place];
+        int node = stream->restoring ? 0 : times->air->site[share->air_place];
         stream_integer(stream, &node, 0, network->n_node - 1);
-        share->air_place = mesh->air_place[node];
+        share->air_place = times->air->place[node];
         stream->failed |= share->air_place < 0;
         stream_integer(stream, &share->timer, 0, times->n - 1);
     }

@@ -8,7 +8,7 @@
 #include "emptying_times.h"
 
 // The reservoir of TIMER supplies this part of what the node at a place in
-// vapour.mesh.air evaporates. Only nodes with a path to the air have shares. PART is
+// times->air evaporates. Only nodes with a path to the air have shares. PART is
 // from 0 to 1; those of a node sum to 1.
 struct evaporation_share {
     double part;
@@ -34,6 +34,9 @@ static inline int reservoir_of(const struct emptying_times *times, int throat)
 // makes a timer for a reservoir that had none. O(throats at the node).
 void share_by_node(struct emptying_times *times, int node);
 void share_by_ends(struct emptying_times *times, int throat);
+
+// NODE evaporates GAIN more than before; its shares stay.
+void share_gain(struct emptying_times *times, int node, double gain);
 
 // The timer of a reservoir; a new one has no throat yet, and no rate.
 int timer_of(struct emptying_times *times, int owner);

@@ -136,7 +136,8 @@ enum status occupancy_init(const struct network *network, unsigned open_walls,
     fill_throats(occupancy, form->length);
     place_rings(occupancy);
     occupancy->vapour = vapour_init(network, form->length, form->knudsen_radius,
-                                    &occupancy->layer, form->vapour_tolerance);
+                                    &occupancy->layer, form->vapour_tolerance,
+                                    form->vapour_step);
     occupancy->clusters = clusters_init(network, &occupancy->incidence,
                                         form->entry_priority, form->gas_parts);
     if (form->films) add_films(occupancy);
@@ -218,6 +219,6 @@ void occupancy_state(struct occupancy *occupancy, struct checkpoint_stream *stre
     stream_integers(stream, occupancy->wet, occupancy->n_wet, 0, n_node - 1);
     stream_integers(stream, occupancy->wet_place, n_node, -1, occupancy->n_wet - 1);
     stream_flags(stream, &occupancy->breakthrough, 1);
-    kron_fronts_state(&occupancy->vapour.mesh, stream);
+    vapour_state(&occupancy->vapour, stream);
     clusters_state(&occupancy->clusters, stream);
 }

@@ -64,6 +64,7 @@ struct occupancy_form {
     const double *entry_priority;    // (n_throat) as clusters_init takes it
     double knudsen_radius;           // m, as vapour_init takes it
     double vapour_tolerance;         // likewise
+    double vapour_step;              // likewise
     const struct ring_stores *rings; // kept; NULL: none
     bool films;                      // join what was a cluster at the start
     const struct film_law *film_law; // kept; NULL: none

@@ -234,7 +234,7 @@ static bool shares_fit(const struct emptying_times *times)
     for (int k = 0; k < times->n_share; k++) {
         const struct evaporation_share *share = &times->share[k];
         const int at = times->share_incidence[k];
-        const int node = times->occupancy->vapour.mesh.air_site[share->air_place];
+        const int node = times->air->site[share->air_place];
         count[share->timer]++;
         fits &= times->share_place[at] == k && share->part >= 0 &&
                 at >= incidence->offset[node] && at < incidence->offset[node + 1] &&
@@ -320,7 +320,7 @@ bool run_fits(const struct run *run)
         run->conditions->liquid != LIQUID_VISCOUS && !run->conditions->kelvin;
     return identities_fit(clusters) && pieces_fit(clusters) && menisci_fit(clusters) &&
            liquid_fits(occupancy) && wet_nodes_fit(occupancy) &&
-           kron_fronts_fit(&occupancy->vapour.mesh) && ended_fit(run, !has_timers) &&
+           vapour_fits(&occupancy->vapour) && ended_fit(run, !has_timers) &&
            losses_fit(run) && history_fits(&run->recorder) &&
            (!has_timers || (owners_fit(&run->times) && losing_fit(&run->times) &&
                             shares_fit(&run->times) &&

@@ -185,6 +185,7 @@ static enum status make_occupancy(const struct network *network, struct run *run
         .entry_priority = entry_priority,
         .knudsen_radius = knudsen_radius(conditions),
         .vapour_tolerance = conditions->vapour_tolerance,
+        .vapour_step = conditions->vapour_step,
         .rings = conditions->rings ? &run->rings : NULL,
         .films = conditions->rings == RINGS_JOINED,
         .film_law = run->film_law.conductance > 0 ? &run->film_law : NULL};

@@ -48,6 +48,14 @@ static void record_step(struct run *run)
     run->imbalance = fmax(run->imbalance, fabs(emptying_times_imbalance(&run->times)));
 }
 
+static enum status refuse_vapour(const struct run *run, struct reason *reason)
+{
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "the vapour was not found to vapour_step = %g of the drying rate at "
+                  "saturation %g; vapour_step=0 finds it without iterations",
+                  run->conditions->vapour_step, network_saturation(run));
+}
+
 static enum status refuse_films(const struct run *run, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
@@ -61,7 +69,8 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
     struct emptying_times *times = &run->times;
     const double rate = rate_now(run);
     const double by_films = times->films ? times->films->evaporation : 0;
-    const double duration = emptying_times_advance(times);
+    const double pace = vapour_pace(&run->occupancy.vapour);
+    const double duration = emptying_times_advance(times) / pace;
     if (duration < 0) return refuse_standstill(run, reason);
     compensated_add(&run->time, duration);
     compensated_add(&run->evaporated, rate * duration);
@@ -75,6 +84,8 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
         run->ended[run->n_ended++] = times->ended[k];
     }
     emptying_times_empty_ended(times);
+    if (run->occupancy.vapour.kept && run->occupancy.vapour.kept->failed)
+        return refuse_vapour(run, reason);
     if (times->films && times->films->failed) return refuse_films(run, reason);
     note_breakthrough(run);
     record_step(run);

@@ -107,11 +107,13 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
 static const char streams[] = "drying"; // prefix of the arrays in the artifact
 
 // Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0),
-// but those with films only where these will forget.
+// but those with films or kept vapour only where these have forgotten.
 void keep_if_due(struct run *run, const struct keeper *keeper)
 {
     const struct film_supply *films = run->times.films;
     if (films && !film_supply_may_be_kept(films)) return;
+    const struct kept_vapour *vapour = run->occupancy.vapour.kept;
+    if (vapour && !kept_vapour_may_be_kept(vapour)) return;
     if (run->n_flow_step % steps_between_cuts(run) != 0) return;
     if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->occupancy);

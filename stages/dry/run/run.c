@@ -31,7 +31,8 @@ double rate_now(const struct run *run)
 {
     if (run->occupancy.n_liquid == 0) return 0;
     return run->conditions->kelvin ? run->kelvin.rate
-                                   : vapour_rate(&run->occupancy.vapour);
+                                   : vapour_rate(&run->occupancy.vapour) *
+                                         vapour_pace(&run->occupancy.vapour);
 }
 
 // Both, because rounding may leave a saturation above 0 with no throat left.

@@ -24,11 +24,11 @@ struct kron_fronts kron_fronts_init(int n_site, bool is_rounded)
     struct kron_fronts fronts = {.n_site = n_site,
                                  .is_rounded = is_rounded,
                                  .first = NEW_ARRAY(int, n_site),
+                                 .air = air_links_init(n_site),
                                  .unused_membership = -1,
                                  .unused_front = -1};
     for (int i = 0; i < n_site; i++)
         fronts.first[i] = -1;
-    air_init(&fronts);
     return fronts;
 }
 
@@ -44,7 +44,7 @@ void kron_fronts_free(struct kron_fronts *fronts)
 {
     for (int f = 0; f < fronts->n_front; f++)
         empty_front(&fronts->front[f]);
-    air_free(fronts);
+    air_links_free(&fronts->air);
     free(fronts->first);
     free(fronts->membership);
     free(fronts->front);
@@ -128,7 +128,7 @@ static void add_member(struct kron_fronts *fronts, int front_index, int site)
     add_membership(fronts, site, front_index, front->n);
     if (front->n == front->capacity) grow_front(front);
     dense_front_add_row(&front->dense, front->n);
-    if (front->air_place) front->air_place[front->n] = fronts->air_place[site];
+    if (front->air_place) front->air_place[front->n] = fronts->air.place[site];
     front->site[front->n++] = site;
 }
 
@@ -142,6 +142,11 @@ static void remove_member(struct kron_fronts *fronts, int front_index, int p)
     front->site[p] = front->site[last];
     if (front->air_place) front->air_place[p] = front->air_place[last];
     fronts->membership[membership_of(fronts, front->site[p], front_index)].place = p;
+}
+
+void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductance)
+{
+    air_links_link(&fronts->air, site, conductance);
 }
 
 void kron_fronts_link(struct kron_fronts *fronts, int a, int b, double conductance)
@@ -242,10 +247,10 @@ static void enlarge(const struct kron_fronts *fronts, struct front *front)
 
 void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
 {
-    const double air = air_take(fronts, site);
+    const double air = air_links_take(&fronts->air, site);
     const int front_index = merge_fronts(fronts, site);
     if (front_index < 0) {
-        air_lower(fronts, air);
+        air_links_lower(&fronts->air, air);
         return;
     }
     extract_row(fronts, front_index, site);
@@ -256,7 +261,7 @@ void kron_fronts_eliminate(struct kron_fronts *fronts, int site)
         if (!front->dense.is_large && front->n > LARGE_FRONT) enlarge(fronts, front);
         if (air > 0) air_raise(fronts, front, air / total);
     }
-    if (air > 0) air_lower(fronts, air * (air / total));
+    if (air > 0) air_links_lower(&fronts->air, air * (air / total));
     if (front->n == 1) { // a dead end
         remove_membership(fronts, front->site[0], front_index);
         front->n = 0;
@@ -316,7 +321,7 @@ static void memberships_state(struct kron_fronts *fronts,
 
 void kron_fronts_state(struct kron_fronts *fronts, struct checkpoint_stream *stream)
 {
-    air_state(fronts, stream);
+    air_links_state(&fronts->air, stream);
     fronts_state(fronts, stream);
     memberships_state(fronts, stream);
 }

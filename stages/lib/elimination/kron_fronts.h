@@ -12,8 +12,7 @@
 // as it goes).
 #pragma once
 
-#include "basics/compensated.h"
-#include "checkpoint/stream.h"
+#include "air_links.h"
 
 #include <stdbool.h>
 
@@ -26,26 +25,12 @@ struct kron_fronts {
     bool is_rounded; // links on large fronts are floats
     int *first;      // (n_site) its memberships, -1: none
 
-    // Conductances to the air, of sites that have one above 0, by places. Unused places
-    // have 0.
-    int *air_place; // (n_site) -1: none
-    int n_air, air_capacity;
-    double *air;   // (n_air)
-    int *air_site; // (n_air) whose place it is, or was last
-    int n_unused_air;
-    int *unused_air;            // (n_unused_air) places
-    struct compensated all_air; // the sum of all conductances
-    double summed_air;          // the sum when all were last added up
+    struct air_links air; // of the sites that remain
 
     struct membership *membership;
     int n_membership, membership_capacity, unused_membership;
     struct front *front;
     int n_front, front_capacity, unused_front;
-
-    // Sites that have come to have a conductance to the air since N_REACHED_AIR was
-    // last set to 0; some may have been eliminated.
-    int n_reached_air;
-    int *reached_air; // (n_reached_air)
 
     double *row; // of the site that is eliminated
     int *place;  // on a front, of the members of one that joins it
@@ -70,8 +55,7 @@ void kron_fronts_link_air(struct kron_fronts *fronts, int site, double conductan
 // Conductance between SITE and the air.
 static inline double kron_fronts_air(const struct kron_fronts *fronts, int site)
 {
-    const int place = fronts->air_place[site];
-    return place < 0 ? 0 : fronts->air[place];
+    return air_links_of(&fronts->air, site);
 }
 
 // Eliminates SITE. O(n^2) for a front of n sites.

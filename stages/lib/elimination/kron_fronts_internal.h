@@ -29,14 +29,7 @@ struct pair {
     double conductance;
 };
 
-// kron_fronts_air.c. AIR_TAKE returns the conductance of SITE to the air, which is
-// eliminated, and frees its place. AIR_FIND_PLACES makes front->air_place. AIR_RAISE
-// adds SHARE of fronts->row to those of the front. AIR_LOWER takes DROP from the sum of
-// all.
-void air_init(struct kron_fronts *fronts);
-double air_take(struct kron_fronts *fronts, int site);
+// kron_fronts_air.c. AIR_FIND_PLACES makes front->air_place. AIR_RAISE adds SHARE of
+// fronts->row to the conductances to the air of the front.
 void air_raise(struct kron_fronts *fronts, struct front *front, double share);
 void air_find_places(struct front *front);
-void air_lower(struct kron_fronts *fronts, double drop);
-void air_state(struct kron_fronts *fronts, struct checkpoint_stream *stream);
-void air_free(struct kron_fronts *fronts);

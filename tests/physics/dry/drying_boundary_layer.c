@@ -450,7 +450,7 @@ TEST(columns_and_levels_are_eliminated)
                                       : lattice_network(3, 4, 1, spacing);
         struct boundary_layer layer =
             make(&network, 5, &(struct boundary_form){.layers = wide ? 4 : 20});
-        struct vapour vapour = vapour_init(&network, spacing, 0, &layer, 0);
+        struct vapour vapour = vapour_init(&network, spacing, 0, &layer, 0, 0);
         for (int i = 0; i < layer.n_exposed; i++)
             if (!foot_is_wet(i)) vapour_dry_node(&vapour, layer.exposed[i]);
         gsl_vector *potential = solve_at_once(&layer);

@@ -65,7 +65,7 @@ static struct errors dry_beside_exact(const struct network *network,
     assert_int_equal(occupancy_init(network, conditions->open_walls, &form, layer,
                                     &occupancy, &reason),
                      STATUS_OK);
-    struct vapour exact = vapour_init(network, scale.length, 0, &occupancy.layer, 0);
+    struct vapour exact = vapour_init(network, scale.length, 0, &occupancy.layer, 0, 0);
     int *liquid_beside = duplicate(occupancy.liquid_beside, (size_t)network->n_node,
                                    sizeof *liquid_beside);
     struct emptying_times times =

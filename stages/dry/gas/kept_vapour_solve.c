@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All potentials of the gas, by conjugate gradients from those of before:
+//     sum_j conductance_ij (x_i - x_j) = residual_i,  phi_i = max(0, phi_i + x_i),
+// until what is on its way is a small part of what may be. The preconditioner is an
+// approximate factor of the sites that were in the gas when it was made, and the
+// diagonal for those that have come since. It is kept while it serves.
+#include "kept_vapour.h"
+
+#include "basics/memory.h"
+#include "sparse/conjugate_gradients.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+// Of STEP, what a solution may leave.
+static const double ENOUGH = 0.1;
+// To make a factor takes as long as so many iterations.
+enum { ITERATIONS_OF_FACTOR = 30, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
+
+struct gas_problem {
+    const struct kept_vapour *kept;
+    struct conductance_matrix matrix; // in the order of rows; the rest is column n
+};
+
+// Both directions of a link are there, in the order of the links.
+static struct conductance_matrix matrix_of_gas(const struct kept_vapour *kept)
+{
+    const struct conductance_matrix *links = &kept->links;
+    const int n = kept->n_row;
+    int room = 0;
+    for (int r = 0; r < n; r++)
+        room += links->offset[kept->row_site[r] + 1] - links->offset[kept->row_site[r]];
+    struct conductance_matrix matrix = {.n = n,
+                                        .n_all = n + 1,
+                                        .offset = NEW_ARRAY(int, n + 2),
+                                        .column = NEW_ARRAY(int, room),
+                                        .value = NEW_ARRAY(double, room),
+                                        .diagonal = NEW_ARRAY(double, n)};
+    int m = 0;
+    for (int r = 0; r < n; r++) {
+        const int site = kept->row_site[r];
+        matrix.diagonal[r] = links->diagonal[site];
+        for (int k = links->offset[site]; k < links->offset[site + 1]; k++) {
+            if (!(links->value[k] > 0)) continue;
+            const int other = links->column[k];
+            const int row = other < links->n ? kept->row[other] : -1;
+            matrix.column[m] = row >= 0 ? row : n;
+            matrix.value[m++] = links->value[k];
+        }
+        matrix.offset[r + 1] = m;
+    }
+    matrix.offset[n + 1] = m;
+    return matrix;
+}
+
+static void multiply(void *context, const double *x, double *image)
+{
+    conductance_matrix_multiply(&((const struct gas_problem *)context)->matrix, x,
+                                image);
+}
+
+static void precondition(void *context, const double *residual, double *z)
+{
+    const struct gas_problem *problem = context;
+    approximate_cholesky_apply(problem->kept->factor, residual, z);
+    for (int r = problem->kept->n_factor; r < problem->matrix.n; r++)
+        z[r] = residual[r] / problem->matrix.diagonal[r];
+}
+
+static double level_of(const struct kept_vapour *kept, int site)
+{
+    return site < kept->links.n ? kept->level[site] : 1;
+}
+
+// Residuals and evaporation that follow from the potentials.
+static void find_flows(struct kept_vapour *kept)
+{
+    const struct conductance_matrix *links = &kept->links;
+    air_links_clear(&kept->air);
+    kept->on_its_way = kept->below_zero = 0;
+    for (int i = 0; i < links->n; i++) {
+        double flow = 0;
+        for (int k = links->offset[i]; k < links->offset[i + 1]; k++)
+            if (links->value[k] > 0)
+                flow += links->value[k] *
+                        (level_of(kept, links->column[k]) - kept->level[i]);
+        if (!kept->is_gas[i]) {
+            if (flow > 0) air_links_link(&kept->air, i, flow);
+            continue;
+        }
+        kept->residual[i] = flow;
+        kept->on_its_way += flow;
+        kept->below_zero -= fmin(0, flow);
+    }
+}
+
+// Reduces the residuals to REDUCTION of their size, or as far as this goes.
+static int correct(struct kept_vapour *kept, struct gas_problem *problem,
+                   double reduction)
+{
+    const int n = kept->n_row;
+    double *b = NEW_ARRAY(double, n), *x = NEW_ARRAY(double, n);
+    struct linear_problem linear = {n, problem, multiply, precondition, {0}};
+    for (int k = 0; k < 3; k++)
+        linear.work[k] = NEW_ARRAY(double, n);
+    for (int r = 0; r < n; r++)
+        b[r] = kept->residual[kept->row_site[r]];
+    const double size = sqrt(sum_of_products(b, b, n));
+    for (int r = 0; r < n; r++)
+        b[r] /= size;
+    const int iterations =
+        conjugate_gradients(&linear, b, x, reduction, MOST_ITERATIONS);
+    for (int r = 0; r < n; r++) {
+        double *level = &kept->level[kept->row_site[r]];
+        *level = fmax(0, *level + x[r] * size);
+    }
+    for (int k = 0; k < 3; k++)
+        free(linear.work[k]);
+    free(b);
+    free(x);
+    return iterations;
+}
+
+static void follow_with_factor(struct kept_vapour *kept,
+                               const struct conductance_matrix *matrix)
+{
+    if (kept->factor) return;
+    kept->factor = approximate_cholesky_create(matrix);
+    kept->n_factor = matrix->n;
+    kept->factor_solutions = 0;
+    kept->factor_iterations = ITERATIONS_OF_FACTOR;
+}
+
+// A factor serves until a solution takes longer than they have taken on average with
+// it, the time to make it included.
+static void judge_factor(struct kept_vapour *kept, int iterations)
+{
+    kept->iterations += iterations;
+    kept->factor_solutions++;
+    kept->factor_iterations += iterations;
+    if (iterations * kept->factor_solutions <= kept->factor_iterations) return;
+    approximate_cholesky_free(kept->factor);
+    kept->factor = NULL;
+}
+
+void kept_vapour_solve(struct kept_vapour *kept)
+{
+    const double before = compensated_value(kept->air.all), waiting = kept->on_its_way;
+    struct gas_problem problem = {kept, matrix_of_gas(kept)};
+    follow_with_factor(kept, &problem.matrix);
+    int iterations = 0, corrections = 0;
+    find_flows(kept);
+    for (;; corrections++) {
+        const double error = kept_vapour_error(kept);
+        const double evaporation = compensated_value(kept->air.all);
+        const double enough = ENOUGH * kept->step * evaporation;
+        if (!(error > enough) || corrections == MOST_CORRECTIONS) break;
+        if (corrections > 0 && evaporation == 0) break; // no way leads to wet sites
+        iterations +=
+            correct(kept, &problem, fmax(1e-3, fmin(0.5, 0.5 * enough / error)));
+        find_flows(kept);
+    }
+    kept->failed |= corrections == MOST_CORRECTIONS;
+    kept->solutions++;
+    judge_factor(kept, iterations);
+    if (before > 0 && waiting > 0)
+        kept->reaches_wet =
+            fmax(0, fmin(1, (compensated_value(kept->air.all) - before) / waiting));
+    conductance_matrix_free(&problem.matrix);
+}

@@ -1,0 +1,59 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Vapour whose potentials are kept for a while (vapour_step) beside the exact vapour: the same drying, the
+# closer the smaller the step, rates within the step, and exact books.
+import sys
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, "tests")
+from tap import done, ok, refused, run, scratch_paths, sets
+
+LEVELS = np.linspace(0.95, 0.05, 19)
+
+
+def dried(*settings):
+    run("dry", "-q", *sets(*settings), at("network"), "-o", at("drying"))
+    with h5py.File(at("drying")) as file:
+        return {"saturation": file["history/saturation"][:], "time": file["history/time"][:],
+                "rate": file["history/rate"][:], "throats": sorted(file["events/throat"][:]),
+                "books": file["summary"].attrs["balance_error"],
+                "balance": file["summary"].attrs["residual"]}
+
+
+def times_of(drying):
+    return np.interp(LEVELS, drying["saturation"][::-1], drying["time"][::-1])
+
+
+def farthest(drying, other):
+    return np.abs(times_of(drying) - times_of(other)).max() / other["time"][-1]
+
+
+with scratch_paths() as at:
+    run("pack", "-q", *sets("sizes.distribution=normal", "sizes.spread=0.2", "sizes.smallest=125e-9",
+                            "sizes.largest=375e-9", "method=radius_expansion", "count=600"), "-o", at("packing"))
+    run("tessellate", "-q", at("packing"), "-o", at("tessellation"))
+    run("merge-nodes", "-q", *sets("measure=fraction", "threshold=0.06"), at("tessellation"), "-o", at("network"))
+    for settings in ([], ["liquid=immobile"], ["rings=isolated"], ["boundary_layer.exchange=lumped"],
+                     ['open=["-x","+z"]', "gravity=9.81"]):
+        name = ", ".join(settings) or "inviscid"
+        exact = dried(*settings)
+        kept = {step: dried(*settings, f"vapour_step={step}") for step in (0.01, 0.3)}
+        off = {step: farthest(drying, exact) for step, drying in kept.items()}
+        ok(off[0.01] < 1e-3 and off[0.3] < 0.03, f"{name}: vapour that is kept, alike in time", off)
+        ok(off[0.01] < off[0.3], f"{name}: the more so the smaller the step", off)
+        ok(all(drying["throats"] == exact["throats"] for drying in kept.values()), f"{name}: the same throats empty")
+        ok(all(drying["books"] < 1e-11 and drying["balance"] < 1e-9 for drying in kept.values()),
+           f"{name}: nothing is lost", [(drying["books"], drying["balance"]) for drying in kept.values()])
+    for saturation in 1, 0.7, 0.4:  # where the same throats are empty
+        start = [f"start_saturation={saturation}"]
+        first = dried(*start)["rate"][0]
+        for step in 0.2, 0.01:
+            rate = dried(*start, f"vapour_step={step}")["rate"][0]
+            ok(abs(rate / first - 1) < step, f"the rate at {saturation} is within {step}", rate / first - 1)
+    for other in "kelvin=true", "liquid=viscous", "rings=films":
+        refused(f"vapour_step with {other}", "vapour_step: must be 0", "dry", "-q",
+                *sets("vapour_step=0.1", other), at("network"))
+
+done()
