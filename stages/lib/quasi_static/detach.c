@@ -52,3 +52,9 @@ bool detach_beyond(struct quasi_static *qs, const struct displacement *moves,
     free(leaves);
     return any;
 }
+
+void leave_detached_grains(struct quasi_static *qs)
+{
+    for (int i = 0; i < qs->n; i++)
+        if (qs->is_detached[i]) qs->step[i] = no_displacement;
+}

@@ -87,6 +87,7 @@ bool frictionless_step(struct quasi_static *qs)
     stiffness_begin(qs->matrix, qs->residual);
     stiffness_finish(qs->matrix, qs->step);
     if (qs->may_detach && detach_beyond(qs, qs->step, SMALL_LIMIT)) return true;
+    leave_detached_grains(qs);
     if (!(slope_along_step(qs) > 0)) return false; // rounding
     struct displacement *from =
         duplicate(qs->displacement, (size_t)qs->n, sizeof *from);

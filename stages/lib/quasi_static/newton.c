@@ -140,6 +140,7 @@ bool newton_step(struct quasi_static *qs, bool *is_fresh)
     }
     if (qs->kinematics->adjust_step) qs->kinematics->adjust_step(qs);
     const double dashpot = dashpot_in_stiffness(qs);
+    leave_detached_grains(qs);
     for (int i = 0; i < qs->n; i++) {
         displacement_subtract(&qs->displacement[i],
                               displacement_scaled(-1, qs->step[i]));

@@ -203,6 +203,9 @@ void detach_fragments(struct quasi_static *qs, const bool *leave);
 // is larger than LIMIT. False: there is none.
 bool detach_beyond(struct quasi_static *qs, const struct displacement *moves,
                    double limit);
+// Takes the step off grains that have left: nothing but the regularisation holds these,
+// so that rounding would take them any distance.
+void leave_detached_grains(struct quasi_static *qs);
 
 // ---- a body that nothing holds [rigid_motion.c] -------------------------------------
 

@@ -224,6 +224,38 @@ TEST(the_whole_balances_at_rest)
     }
 }
 
+// Nothing moves grains that have left, rounding neither: what holds them no more than
+// rounding does would let it take them any distance.
+TEST(grains_that_left_stay_there)
+{
+    struct packing packing = irregular_packing(SIDE, RADIUS, false);
+    uint8_t *held = lowest_grains(&packing, SIDE);
+    double *relative = weak_and_strong(&packing);
+    struct quasi_static *equilibrium =
+        new_equilibrium(&packing, held, SMALL, 0, relative);
+    struct vector *whole = shrinking_load(&packing, size), force[N], was[N], is[N];
+    bool had_left[N] = {false};
+    int compared = 0;
+    for (int step = 1; step <= 20; step++) {
+        for (int i = 0; i < N; i++)
+            force[i] = scale(step / 20.0, whole[i]);
+        next_equilibrium(equilibrium, force);
+        quasi_static_displacements(equilibrium, is);
+        for (int i = 0; i < N; i++) {
+            compared += had_left[i];
+            if (had_left[i]) assert_memory_equal(&is[i], &was[i], sizeof is[i]);
+            had_left[i] = quasi_static_is_detached(equilibrium)[i];
+        }
+        memcpy(was, is, sizeof was);
+    }
+    assert_true(compared > 0);
+    quasi_static_free(equilibrium);
+    free(relative);
+    free(whole);
+    free(held);
+    packing_free(&packing);
+}
+
 // ---- energy, and bonds that stay broken ---------------------------------------------
 
 // What is missing of what came in, over some cycles of SAFETY.
