@@ -217,8 +217,6 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
     stream_numbers(stream, &kept->on_its_way, 1);
     stream_numbers(stream, &kept->below_zero, 1);
     stream_numbers(stream, &kept->reaches_wet, 1);
-    stream_long(stream, &kept->solutions);
-    stream_long(stream, &kept->iterations);
     air_links_state(&kept->air, stream);
 }
 

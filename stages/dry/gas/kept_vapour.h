@@ -47,8 +47,7 @@ struct kept_vapour {
     struct approximate_cholesky *factor;     // of the first rows; NULL: to be made
     int n_factor;                            // rows
     int factor_solutions, factor_iterations; // with it; counts what it took to make
-    int64_t solutions, iterations;
-    bool failed; // potentials were not found
+    bool failed;                             // potentials were not found
 };
 
 // Sites up to N_WET hold liquid, those from there to N_SITE are in the gas. The first

@@ -136,7 +136,6 @@ static void follow_with_factor(struct kept_vapour *kept,
 // it, the time to make it included.
 static void judge_factor(struct kept_vapour *kept, int iterations)
 {
-    kept->iterations += iterations;
     kept->factor_solutions++;
     kept->factor_iterations += iterations;
     if (iterations * kept->factor_solutions <= kept->factor_iterations) return;
@@ -162,7 +161,6 @@ void kept_vapour_solve(struct kept_vapour *kept)
         find_flows(kept);
     }
     kept->failed |= corrections == MOST_CORRECTIONS;
-    kept->solutions++;
     judge_factor(kept, iterations);
     if (before > 0 && waiting > 0)
         kept->reaches_wet =

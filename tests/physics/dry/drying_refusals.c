@@ -47,6 +47,9 @@ TEST(impossible_conditions)
     REFUSE(vapour_tolerance, 1e-7);
     REFUSE(vapour_tolerance, 0.6);
     REFUSE(vapour_tolerance, NAN);
+    REFUSE(vapour_step, -0.1);
+    REFUSE(vapour_step, 0.6);
+    REFUSE(vapour_step, NAN);
     REFUSE(first_period_rate_fraction, 0);
     REFUSE(first_period_rate_fraction, 1);
 #undef REFUSE
