@@ -6,12 +6,10 @@
 import sys
 
 import h5py
-import numpy as np
 
 sys.path.insert(0, "tests")
+from drying_curves import farthest
 from tap import done, ok, refused, run, scratch_paths, sets
-
-LEVELS = np.linspace(0.95, 0.05, 19)
 
 
 def network(name, *settings):
@@ -27,14 +25,6 @@ def dried(source, *settings):
         return {"saturation": file["history/saturation"][:], "time": file["history/time"][:],
                 "throats": file["events/throat"][:], "books": file["summary"].attrs["balance_error"],
                 "residual": file["summary"].attrs["liquid_residual"]}
-
-
-def times_of(drying):
-    return np.interp(LEVELS, drying["saturation"][::-1], drying["time"][::-1])
-
-
-def farthest(drying, other):
-    return np.abs(times_of(drying) - times_of(other)).max() / other["time"][-1]
 
 
 with scratch_paths() as at:
