@@ -11,15 +11,20 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // Of what a wet site evaporates on average, so much may stay on its way at one site.
 static const double MUCH = 0.03;
 
+static void all_out_of_gas(struct kept_vapour *kept)
+{
+    for (int i = 0; i < kept->links.n; i++)
+        kept->row[i] = -1;
+    kept->n_row = 0;
+}
+
 static void enter_gas(struct kept_vapour *kept, int site)
 {
     const struct conductance_matrix *links = &kept->links;
-    kept->is_gas[site] = true;
     kept->row[site] = kept->n_row;
     kept->row_site[kept->n_row++] = site;
     links->diagonal[site] = 0;
@@ -35,7 +40,6 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
         .step = step,
         .air = air_links_init(n_site),
         .links = conductance_matrix_of_links(n_site, n_site + 1, n_link, link),
-        .is_gas = NEW_ARRAY(bool, n_site),
         .level = NEW_ARRAY(double, n_site),
         .residual = NEW_ARRAY(double, n_site),
         .reaches_wet = 1,
@@ -51,8 +55,7 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
         links->value[k] *= -1;
     for (int l = 0; l < n_open; l++)
         kept_vapour_open(kept, link[l].site[0], link[l].site[1], link[l].conductance);
-    for (int i = 0; i < n_site; i++)
-        kept->row[i] = -1;
+    all_out_of_gas(kept);
     for (int i = n_wet; i < n_site; i++)
         enter_gas(kept, i);
     kept_vapour_solve(kept);
@@ -65,7 +68,6 @@ void kept_vapour_free(struct kept_vapour *kept)
     air_links_free(&kept->air);
     conductance_matrix_free(&kept->links);
     approximate_cholesky_free(kept->factor);
-    free(kept->is_gas);
     free(kept->level);
     free(kept->residual);
     free(kept->row_site);
@@ -136,7 +138,7 @@ static void pass_on(struct kept_vapour *kept, int site, double much)
         const double flow = links->value[k] * up;
         const int other = links->column[k];
         if (!(flow > 0)) continue;
-        if (other < links->n && kept->is_gas[other]) {
+        if (is_in_gas(kept, other)) {
             kept->residual[other] += flow;
             if (kept->residual[other] > much) enqueue(kept, other);
             continue;
@@ -205,8 +207,8 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
     stream_integers(stream, kept->row_site, kept->n_row, 0, n - 1);
     if (stream->restoring) {
         const int n_row = kept->n_row;
-        memset(kept->is_gas, 0, (size_t)n * sizeof *kept->is_gas);
-        kept->n_row = kept->n_dried = 0;
+        all_out_of_gas(kept);
+        kept->n_dried = 0;
         for (int r = 0; r < n_row; r++)
             enter_gas(kept, kept->row_site[r]);
         approximate_cholesky_free(kept->factor);
@@ -224,7 +226,7 @@ bool kept_vapour_fits(const struct kept_vapour *kept)
 {
     int n_gas = 0;
     for (int i = 0; i < kept->links.n; i++) {
-        n_gas += kept->is_gas[i];
+        n_gas += is_in_gas(kept, i);
         if (!(air_links_of(&kept->air, i) >= 0) || !(kept->level[i] >= 0) ||
             !isfinite(kept->residual[i]))
             return false;

@@ -24,7 +24,6 @@ struct kept_vapour {
     // Links of all sites, those of throats with liquid below 0; the air is site n. The
     // diagonal is that of sites in the gas.
     struct conductance_matrix links;
-    bool *is_gas;        // (n) site
     double *level;       // (n) phi, 0 outside the gas
     double *residual;    // (n) 0 outside the gas
     double on_its_way;   // sum of residuals
@@ -49,6 +48,12 @@ struct kept_vapour {
     int factor_solutions, factor_iterations; // with it; counts what it took to make
     bool failed;                             // potentials were not found
 };
+
+// The air is not.
+static inline bool is_in_gas(const struct kept_vapour *kept, int site)
+{
+    return site < kept->links.n && kept->row[site] >= 0;
+}
 
 // Sites up to N_WET hold liquid, those from there to N_SITE are in the gas. The first
 // N_OPEN of N_LINK links are open, the others lead through throats with liquid; site

@@ -11,7 +11,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 // Of STEP, what a solution may leave.
 static const double ENOUGH = 0.1;
@@ -44,8 +43,7 @@ static struct conductance_matrix matrix_of_gas(const struct kept_vapour *kept)
         for (int k = links->offset[site]; k < links->offset[site + 1]; k++) {
             if (!(links->value[k] > 0)) continue;
             const int other = links->column[k];
-            const int row = other < links->n ? kept->row[other] : -1;
-            matrix.column[m] = row >= 0 ? row : n;
+            matrix.column[m] = is_in_gas(kept, other) ? kept->row[other] : n;
             matrix.value[m++] = links->value[k];
         }
         matrix.offset[r + 1] = m;
@@ -85,7 +83,7 @@ static void find_flows(struct kept_vapour *kept)
             if (links->value[k] > 0)
                 flow += links->value[k] *
                         (level_of(kept, links->column[k]) - kept->level[i]);
-        if (!kept->is_gas[i]) {
+        if (!is_in_gas(kept, i)) {
             if (flow > 0) air_links_link(&kept->air, i, flow);
             continue;
         }
