@@ -58,6 +58,7 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
     all_out_of_gas(kept);
     for (int i = n_wet; i < n_site; i++)
         enter_gas(kept, i);
+    kept_vapour_find_flows(kept);
     kept_vapour_solve(kept);
     return kept;
 }

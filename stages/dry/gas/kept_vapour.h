@@ -85,7 +85,9 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
 // Whether a restored state is one of potentials.
 bool kept_vapour_fits(const struct kept_vapour *kept);
 
-// kept_vapour_solve.c: finds all potentials, and what wet sites evaporate.
+// kept_vapour_solve.c: residuals, and what wet sites evaporate, from the potentials;
+// and finds all of them from given residuals.
+void kept_vapour_find_flows(struct kept_vapour *kept);
 void kept_vapour_solve(struct kept_vapour *kept);
 
 // Largest sum of the errors of what wet sites evaporate.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All potentials of the gas, by conjugate gradients from those of before:
 //     sum_j conductance_ij (x_i - x_j) = residual_i,  phi_i = max(0, phi_i + x_i),
-// until what is on its way is a small part of what may be. The preconditioner is an
-// approximate factor of the sites that were in the gas when it was made, and the
-// diagonal for those that have come since. It is kept while it serves.
+// until what is on its way is a small part of what may be. The approximate factor of
+// the preconditioner knows the sites that were in the gas when it was made. It is kept
+// while it serves.
 #include "kept_vapour.h"
+
+#include "gas_preconditioner.h"
 
 #include "basics/memory.h"
 #include "sparse/conjugate_gradients.h"
@@ -17,12 +19,8 @@ static const double ENOUGH = 0.1;
 // To make a factor takes as long as so many iterations.
 enum { ITERATIONS_OF_FACTOR = 30, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
 
-struct gas_problem {
-    const struct kept_vapour *kept;
-    struct conductance_matrix matrix; // in the order of rows; the rest is column n
-};
-
-// Both directions of a link are there, in the order of the links.
+// In the order of rows; what is not in the gas is column n. Both directions of a link
+// are there, in the order of the links.
 static struct conductance_matrix matrix_of_gas(const struct kept_vapour *kept)
 {
     const struct conductance_matrix *links = &kept->links;
@@ -54,16 +52,13 @@ static struct conductance_matrix matrix_of_gas(const struct kept_vapour *kept)
 
 static void multiply(void *context, const double *x, double *image)
 {
-    conductance_matrix_multiply(&((const struct gas_problem *)context)->matrix, x,
-                                image);
+    const struct gas_preconditioner *gas = context;
+    conductance_matrix_multiply(gas->matrix, x, image);
 }
 
 static void precondition(void *context, const double *residual, double *z)
 {
-    const struct gas_problem *problem = context;
-    approximate_cholesky_apply(problem->kept->factor, residual, z);
-    for (int r = problem->kept->n_factor; r < problem->matrix.n; r++)
-        z[r] = residual[r] / problem->matrix.diagonal[r];
+    gas_preconditioner_apply(context, residual, z);
 }
 
 static double level_of(const struct kept_vapour *kept, int site)
@@ -71,8 +66,7 @@ static double level_of(const struct kept_vapour *kept, int site)
     return site < kept->links.n ? kept->level[site] : 1;
 }
 
-// Residuals and evaporation that follow from the potentials.
-static void find_flows(struct kept_vapour *kept)
+void kept_vapour_find_flows(struct kept_vapour *kept)
 {
     const struct conductance_matrix *links = &kept->links;
     air_links_clear(&kept->air);
@@ -94,12 +88,12 @@ static void find_flows(struct kept_vapour *kept)
 }
 
 // Reduces the residuals to REDUCTION of their size, or as far as this goes.
-static int correct(struct kept_vapour *kept, struct gas_problem *problem,
+static int correct(struct kept_vapour *kept, struct gas_preconditioner *gas,
                    double reduction)
 {
     const int n = kept->n_row;
     double *b = NEW_ARRAY(double, n), *x = NEW_ARRAY(double, n);
-    struct linear_problem linear = {n, problem, multiply, precondition, {0}};
+    struct linear_problem linear = {n, gas, multiply, precondition, {0}};
     for (int k = 0; k < 3; k++)
         linear.work[k] = NEW_ARRAY(double, n);
     for (int r = 0; r < n; r++)
@@ -144,24 +138,25 @@ static void judge_factor(struct kept_vapour *kept, int iterations)
 void kept_vapour_solve(struct kept_vapour *kept)
 {
     const double before = compensated_value(kept->air.all), waiting = kept->on_its_way;
-    struct gas_problem problem = {kept, matrix_of_gas(kept)};
-    follow_with_factor(kept, &problem.matrix);
+    struct conductance_matrix matrix = matrix_of_gas(kept);
+    follow_with_factor(kept, &matrix);
+    struct gas_preconditioner gas =
+        gas_preconditioner_of(&matrix, kept->factor, kept->n_factor);
     int iterations = 0, corrections = 0;
-    find_flows(kept);
-    for (;; corrections++) {
+    for (; corrections < MOST_CORRECTIONS; corrections++) {
         const double error = kept_vapour_error(kept);
         const double evaporation = compensated_value(kept->air.all);
         const double enough = ENOUGH * kept->step * evaporation;
-        if (!(error > enough) || corrections == MOST_CORRECTIONS) break;
+        if (!(error > enough)) break;
         if (corrections > 0 && evaporation == 0) break; // no way leads to wet sites
-        iterations +=
-            correct(kept, &problem, fmax(1e-3, fmin(0.5, 0.5 * enough / error)));
-        find_flows(kept);
+        iterations += correct(kept, &gas, fmax(1e-3, fmin(0.5, 0.5 * enough / error)));
+        kept_vapour_find_flows(kept);
     }
     kept->failed |= corrections == MOST_CORRECTIONS;
+    gas_preconditioner_free(&gas);
+    conductance_matrix_free(&matrix);
     judge_factor(kept, iterations);
     if (before > 0 && waiting > 0)
         kept->reaches_wet =
             fmax(0, fmin(1, (compensated_value(kept->air.all) - before) / waiting));
-    conductance_matrix_free(&problem.matrix);
 }
