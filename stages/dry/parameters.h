@@ -47,3 +47,6 @@ enum status complete_conditions(struct dry_parameters *parameters,
 // films.step and flow_step, or their defaults in a network of so many THROATS.
 double film_step(const struct dry_parameters *parameters, double throats);
 double flow_step(const struct dry_parameters *parameters, double throats);
+
+// The same for vapour_step, with so many nodes on the open walls.
+double vapour_step(const struct dry_parameters *parameters, double open_nodes);

@@ -20,9 +20,9 @@ struct gas_preconditioner {
 struct gas_preconditioner gas_preconditioner_of(const struct conductance_matrix *matrix,
                                                 struct approximate_cholesky *factor,
                                                 int n_factor);
-void gas_preconditioner_free(struct gas_preconditioner *preconditioner);
+void gas_preconditioner_free(struct gas_preconditioner *gas);
 
 // Z (n) = M^-1 B (n), symmetric and positive definite. B as approximate_cholesky_apply
 // wants it.
-void gas_preconditioner_apply(const struct gas_preconditioner *preconditioner,
-                              const double *b, double *z);
+void gas_preconditioner_apply(const struct gas_preconditioner *gas, const double *b,
+                              double *z);

@@ -30,8 +30,10 @@ struct kept_vapour {
     double below_zero;   // of those below 0: rounding and what a solution leaves
     double reaches_wet;  // share of what was on its way that came to wet sites, at the
                          // last solution
-    int n_row;           // sites in the gas, in the order in which they came into it
+    int n_row;           // sites in the gas: sorted, then in the order in which they
+                         // came into it
     int *row_site, *row; // (n_row), and (n) the place of each; -1: none
+    int *order;          // (n) all sites, those that are linked side by side
 
     int n_dried;
     int *dried; // (n_dried) sites that have dried since the last _follow

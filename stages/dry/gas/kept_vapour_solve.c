@@ -15,9 +15,21 @@
 #include <stdlib.h>
 
 // Of STEP, what a solution may leave.
-static const double ENOUGH = 0.1;
+static const double ENOUGH = 0.3;
 // To make a factor takes as long as so many iterations.
 enum { ITERATIONS_OF_FACTOR = 30, MOST_CORRECTIONS = 30, MOST_ITERATIONS = 500 };
+
+// Where no factor knows the rows: puts them in the order of sites.
+static void sort_rows(struct kept_vapour *kept)
+{
+    kept->n_row = 0;
+    for (int k = 0; k < kept->links.n; k++) {
+        const int site = kept->order[k];
+        if (kept->row[site] < 0) continue;
+        kept->row[site] = kept->n_row;
+        kept->row_site[kept->n_row++] = site;
+    }
+}
 
 // In the order of rows; what is not in the gas is column n. Both directions of a link
 // are there, in the order of the links.
@@ -138,6 +150,7 @@ static void judge_factor(struct kept_vapour *kept, int iterations)
 void kept_vapour_solve(struct kept_vapour *kept)
 {
     const double before = compensated_value(kept->air.all), waiting = kept->on_its_way;
+    if (!kept->factor) sort_rows(kept);
     struct conductance_matrix matrix = matrix_of_gas(kept);
     follow_with_factor(kept, &matrix);
     struct gas_preconditioner gas =

@@ -23,6 +23,14 @@
 // have emptied with it but for rounding.
 static const double TIE = 1e-12;
 
+// Timers whose earliest end is kept.
+enum { BLOCK = 128 };
+
+struct timer_block {
+    double end, tie; // the earliest
+    bool is_stale;   // a timer has another end since
+};
+
 // Scaled, of a throat or of rings.
 static double volume_of(const struct emptying_times *times, int place)
 {
@@ -98,6 +106,20 @@ static inline void find_end(struct emptying_times *times, int k)
     times->tie[k] = times->since[k] + (left - times->nothing[k]) * each;
 }
 
+static void renew_end(struct emptying_times *times, int k)
+{
+    find_end(times, k);
+    times->block[k / BLOCK].is_stale = true;
+}
+
+static void renew_all_ends(struct emptying_times *times)
+{
+    for (int k = 0; k < times->n; k++)
+        find_end(times, k);
+    for (int k = 0; k < times->n; k += BLOCK)
+        times->block[k / BLOCK].is_stale = true;
+}
+
 static void end_timer(struct emptying_times *times, int k)
 {
     if (times->throat[k] >= 0) stop_timer(times, k);
@@ -106,7 +128,7 @@ static void end_timer(struct emptying_times *times, int k)
     times->has_sum[k] = false;
     times->rate[k] = times->nothing[k] = 0;
     times->left[k] = 1;
-    find_end(times, k);
+    renew_end(times, k);
     times->unused[times->n_unused++] = k;
 }
 
@@ -134,7 +156,7 @@ static void renew_dirty(struct emptying_times *times)
         else
             advance_timer(times, k);
         evaporation_shares_set_rate(times, k);
-        find_end(times, k);
+        renew_end(times, k);
     }
     times->n_dirty = 0;
 }
@@ -182,8 +204,7 @@ static void set_rates(struct emptying_times *times, bool has_dried)
         find_sources(times);
         film_supply_set_rates(times);
     }
-    for (int k = 0; all && k < times->n; k++)
-        find_end(times, k);
+    if (all) renew_all_ends(times);
 }
 
 struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_throat)
@@ -212,6 +233,7 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
         .nothing = NEW_ARRAY(double, n),
         .end = NEW_ARRAY(double, n),
         .tie = NEW_ARRAY(double, n),
+        .block = NEW_ARRAY(struct timer_block, n / BLOCK + 1),
         .saturation = NEW_ARRAY(double, n),
         .unused = NEW_ARRAY(int, n),
         .losing = NEW_ARRAY(int, n),
@@ -253,6 +275,7 @@ void emptying_times_free(struct emptying_times *times)
     free(times->nothing);
     free(times->end);
     free(times->tie);
+    free(times->block);
     free(times->saturation);
     free(times->unused);
     free(times->losing);
@@ -285,22 +308,39 @@ double emptying_times_imbalance(const struct emptying_times *times)
 
 // --- events ------------------------------------------------------------------------
 
-// The earliest end; INFINITY if no throat loses. Sixteen minima side by side vectorise.
-static double first_end(const struct emptying_times *times)
+// INFINITY of none. Sixteen minima side by side vectorise.
+static double least_of(int n, const double *value)
 {
     enum { LANES = 16 };
-    double first[LANES];
+    double least[LANES];
     for (int l = 0; l < LANES; l++)
-        first[l] = INFINITY;
+        least[l] = INFINITY;
     int k = 0;
-    for (; k + LANES <= times->n; k += LANES)
+    for (; k + LANES <= n; k += LANES)
         for (int l = 0; l < LANES; l++)
-            first[l] = times->end[k + l] < first[l] ? times->end[k + l] : first[l];
-    for (; k < times->n; k++)
-        first[0] = fmin(first[0], times->end[k]);
+            least[l] = value[k + l] < least[l] ? value[k + l] : least[l];
+    for (; k < n; k++)
+        least[0] = fmin(least[0], value[k]);
     for (int l = 1; l < LANES; l++)
-        first[0] = fmin(first[0], first[l]);
-    return first[0];
+        least[0] = fmin(least[0], least[l]);
+    return least[0];
+}
+
+// The earliest end; INFINITY if no throat loses.
+static double first_end(struct emptying_times *times)
+{
+    double first = INFINITY;
+    for (int begin = 0; begin < times->n; begin += BLOCK) {
+        struct timer_block *block = &times->block[begin / BLOCK];
+        if (block->is_stale) {
+            const int n = times->n - begin < BLOCK ? times->n - begin : BLOCK;
+            block->end = least_of(n, times->end + begin);
+            block->tie = least_of(n, times->tie + begin);
+            block->is_stale = false;
+        }
+        first = fmin(first, block->end);
+    }
+    return first;
 }
 
 static void end_throat(struct emptying_times *times, int k)
@@ -314,17 +354,13 @@ static void end_throat(struct emptying_times *times, int k)
     times->ended[times->n_ended++] = times->throat[k];
 }
 
-// Ends all throats that have lost everything. Blocks without any are skipped quickly.
+// Ends all throats that have lost everything.
 static void end_throats(struct emptying_times *times)
 {
-    enum { BLOCK = 128 };
     times->n_ended = 0;
-    for (int first = 0; first < times->n; first += BLOCK) {
-        const int last = first + BLOCK < times->n ? first + BLOCK : times->n;
-        int any = 0;
-        for (int k = first; k < last; k++)
-            any |= times->tie[k] <= times->now;
-        for (int k = first; any && k < last; k++)
+    for (int begin = 0; begin < times->n; begin += BLOCK) {
+        if (!(times->block[begin / BLOCK].tie <= times->now)) continue;
+        for (int k = begin; k < begin + BLOCK && k < times->n; k++)
             if (times->tie[k] <= times->now) end_throat(times, k);
     }
     if (times->n_ended > 1)
@@ -418,7 +454,7 @@ void emptying_times_state(struct emptying_times *times,
         if (times->owner[k] >= 0) times->timer[times->owner[k]] = k;
         const int throat = times->throat[k];
         times->nothing[k] = throat < 0 ? 0 : TIE * volume_of(times, throat);
-        find_end(times, k);
     }
+    if (stream->restoring) renew_all_ends(times);
     if (times->films) film_supply_state(times, stream);
 }

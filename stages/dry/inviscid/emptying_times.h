@@ -20,6 +20,7 @@
 struct evaporation_share;
 
 struct film_supply;
+struct timer_block;
 
 struct emptying_times {
     struct occupancy *occupancy;
@@ -47,9 +48,10 @@ struct emptying_times {
     double *left_lost;       // (n) what rounding takes from LEFT
     double *since;           // (n) the moment at which so much was left
     double *nothing;         // (n) if no more is left, the throat has emptied
-    double *end, *tie;  // (n) the moments at which it has lost all, or all but NOTHING
-    double now;         // since all LEFT were last brought up to date
-    double *saturation; // (n_place) of those whose timer has stopped
+    double *end, *tie; // (n) the moments at which it has lost all, or all but NOTHING
+    struct timer_block *block; // the earliest ends of timers side by side
+    double now;                // since all LEFT were last brought up to date
+    double *saturation;        // (n_place) of those whose timer has stopped
     int n_unused;
     int *unused; // (n_unused) timers
     int n_losing;

@@ -40,6 +40,9 @@ static const double SMALL_BYTES = 22000, GRAIN_BYTES = 54, THROAT_BYTES = 107;
 // Events are recorded one by one up to so many throats, above in a thousand steps.
 static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
 
+// The vapour is found at each event up to so many nodes on the open walls.
+static const double MOST_OPEN_NODES_BY_EVENTS = 6000, KEPT_STEP = 0.2;
+
 static struct cost cost_of(double seconds, double mebibytes)
 {
     const double all = START_SECONDS + seconds;
@@ -113,6 +116,23 @@ struct cost cost_of_merging(const struct body_size *body)
 {
     return writes(cost_of(3e-6 * body->unmerged, 4e-4 * body->unmerged),
                   THROAT_BYTES * body->throats);
+}
+
+double default_vapour_step(double open_nodes)
+{
+    return open_nodes > MOST_OPEN_NODES_BY_EVENTS ? KEPT_STEP : 0;
+}
+
+// Solutions of the vapour are as many as nodes over those that dry in between, STEP of
+// the open face.
+struct cost cost_of_kept_drying(const struct body_size *body, double step)
+{
+    const double throats = body->throats;
+    const double solutions = throats / (body->face * step);
+    return writes(cost_of(throats * (2e-6 + 2.5e-9 * body->face + 5.2e-8 * solutions) +
+                              1.2e-7 * body->changes,
+                          5.5e-4 * throats + 14 * body->changes / MEBIBYTE),
+                  THROAT_BYTES * throats + 12 * body->changes);
 }
 
 struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact)

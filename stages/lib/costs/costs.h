@@ -54,6 +54,13 @@ struct cost cost_of_merging(const struct body_size *body);
 // without a tolerance.
 struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact);
 
+// dry.vapour_step by default with so many nodes on the open walls. From some 4000 on
+// dryings are faster with it; below 6000 they stay exact.
+double default_vapour_step(double open_nodes);
+
+// The same with vapour that is kept until errors may add up to STEP of the rate.
+struct cost cost_of_kept_drying(const struct body_size *body, double step);
+
 // What the flow of viscous liquid adds, found at each event, or KEPT for a while.
 struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
                               bool kept);
