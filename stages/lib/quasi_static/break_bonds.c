@@ -18,14 +18,14 @@ static void record_crack(struct quasi_static *qs, struct contact_pair *pair, int
 {
     const int i = pair->grain[0];
     const struct vector from =
-        add(qs->displacement[i].translation, scale(pair->arm[0], pair->axis[0]));
+        add(qs->previous[i].translation, scale(pair->arm[0], pair->axis[0]));
     GROW_ARRAY(qs->crack, qs->n_crack, qs->crack_capacity);
     qs->crack[qs->n_crack++] = (struct dem_crack){
         .bond = pair->bond,
         .mode = (uint8_t)mode,
         .cycle = qs->iterations,
         .position = add(qs->packing->position[i], scale(qs->length, from))};
-    pair_break_bond(pair, qs->deformation[pair - qs->pair]);
+    pair_break_bond(pair, pair->deformation);
 }
 
 static struct overload overload_of(const struct quasi_static *qs, int j)

@@ -27,6 +27,7 @@ void detach_fragments(struct quasi_static *qs, const bool *leaves)
     for (int i = 0; i < qs->n; i++) {
         if (!leaves[qs->fragments.of[i]] || qs->is_detached[i]) continue;
         qs->is_detached[i] = true;
+        if (!qs->large) qs->displacement[i] = qs->previous[i];
         if (qs->n_detached++ == 0) qs->first_detached = i;
     }
     apply_external_load(qs);

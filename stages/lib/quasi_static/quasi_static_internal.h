@@ -172,6 +172,10 @@ bool frictionless_step(struct quasi_static *qs);
 void commit_state(struct quasi_static *qs);
 void roll_back_state(struct quasi_static *qs);
 
+// Commits an equilibrium, unless small displacements are not small in it: then it only
+// shows which bond breaks or what leaves, and the next begins where this one began.
+void commit_equilibrium(struct quasi_static *qs);
+
 // Whether the splitting is there for contacts that slip [splitting/splitting.h].
 static inline bool has_splitting(const struct quasi_static *qs)
 {

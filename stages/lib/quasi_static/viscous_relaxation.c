@@ -28,6 +28,16 @@ void commit_state(struct quasi_static *qs)
     if (qs->kinematics->commit) qs->kinematics->commit(qs);
 }
 
+// A far place would not have been reached: what takes grains there breaks before.
+void commit_equilibrium(struct quasi_static *qs)
+{
+    for (int i = 0; i < qs->n && !qs->large; i++)
+        if (!qs->is_detached[i] &&
+            !(displacement_size(qs->displacement[i]) <= SMALL_LIMIT))
+            return;
+    commit_state(qs);
+}
+
 void roll_back_state(struct quasi_static *qs)
 {
     memcpy(qs->displacement, qs->previous, (size_t)qs->n * sizeof *qs->displacement);
@@ -91,9 +101,12 @@ static bool viscous_relaxation(struct quasi_static *qs)
     for (int64_t k = 0; k < qs->setup.most_iterations && qs->damping <= STIFFEST; k++) {
         if (qs->kinematics->solve(qs)) {
             if (qs->damping > 0 && slides_away(qs)) break;
+            if (qs->damping == 0) {
+                commit_equilibrium(qs);
+                return true;
+            }
             pace.carried = largest_dashpot_load(qs);
             commit_state(qs);
-            if (qs->damping == 0) return true;
             lengthen(qs, &pace);
         } else {
             shorten(qs, &pace);
@@ -108,7 +121,7 @@ bool relax_to_equilibrium(struct quasi_static *qs)
 {
     qs->damping = 0;
     if (qs->kinematics->solve(qs)) {
-        commit_state(qs);
+        commit_equilibrium(qs);
         return true;
     }
     const bool too_many = has_splitting(qs) && contact_solver_is_full(qs->contacts);

@@ -186,6 +186,43 @@ TEST(one_bond_breaks)
     packing_free(&packing);
 }
 
+// A load that would bend a row by far more than is small breaks its bond with the held
+// grain. The rest leaves from where it rested before, whichever end is numbered first.
+TEST(what_breaks_off_has_not_moved_far)
+{
+    enum { N = 5 };
+    struct packing packing = cubic_lattice(N, 1, 1, false);
+    const double f = 1e-12, r = radius_fraction * RADIUS;
+    for (int way = 0; way < 4; way++) {
+        const int held = way % 2 * (N - 1), end = N - 1 - held;
+        const uint8_t fixed[N] = {[0] = held == 0, [N - 1] = held != 0};
+        struct quasi_static_setup setup = setup_of(&packing, fixed);
+        setup.material.friction = way / 2 * 0.5;
+        setup.bond.normal_strength = 100 * f * RADIUS * r / (M_PI_4 * pow(r, 4));
+        struct quasi_static *equilibrium = make_equilibrium(&setup);
+        struct vector force[N] = {{0, 0, 0}}, was[N], is[N];
+        force[end].y = f;
+        next_equilibrium(equilibrium, force);
+        quasi_static_displacements(equilibrium, was);
+        assert_true(was[end].y > 0);
+        force[end].y = 0.2 * RADIUS / was[end].y * f;
+        next_equilibrium(equilibrium, force);
+        quasi_static_displacements(equilibrium, is);
+        int n_crack, first;
+        const struct dem_crack *crack = quasi_static_cracks(equilibrium, &n_crack);
+        assert_int_equal(n_crack, 1);
+        assert_int_equal(crack[0].bond, held == 0 ? 0 : N - 2);
+        const int a = packing.bond[crack[0].bond][0];
+        const double along = fabs(crack[0].position.x - packing.position[a].x);
+        assert_close(along, RADIUS, 1e-3);
+        assert_true(fabs(crack[0].position.y - packing.position[a].y) < 1e-3 * RADIUS);
+        assert_int_equal(quasi_static_detached(equilibrium, &first), N - 1);
+        assert_memory_equal(is, was, sizeof is);
+        quasi_static_free(equilibrium);
+    }
+    packing_free(&packing);
+}
+
 // A grain pressed on the wall sinks in by F/k, as a wall is rigid [K 4.22].
 TEST(a_wall_is_rigid)
 {

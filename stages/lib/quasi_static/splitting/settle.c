@@ -133,7 +133,7 @@ static bool follow(struct quasi_static *qs, struct splitting *s)
             roll_back_state(qs);
             damping *= 10;
         } else {
-            commit_state(qs);
+            commit_equilibrium(qs);
             return true;
         }
     }
