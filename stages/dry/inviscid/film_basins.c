@@ -290,6 +290,11 @@ double film_basins_fall(const struct film_basins *basins, int place)
     return basins->of[place] >= 0 ? basins->basin[basins->of[place]].fall : 0;
 }
 
+double film_basins_height(const struct film_basins *basins, int cluster)
+{
+    return basins->gap[cluster] - basins->basin[basins->of[cluster]].fall;
+}
+
 double film_basins_failing(const struct film_basins *basins)
 {
     return basins->failing;

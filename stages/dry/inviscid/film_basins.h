@@ -33,6 +33,9 @@ void film_basins_set(struct film_basins *basins, int cluster, int basin, double 
 // The cluster of BASIN of the least gap, which supplies from now on; -1: none is left.
 int film_basins_supplier(struct film_basins *basins, int basin);
 
+// How far the level of CLUSTER, which is in a basin, is above its least now.
+double film_basins_height(const struct film_basins *basins, int cluster);
+
 // How far levels at PLACE have fallen since the solution.
 double film_basins_fall(const struct film_basins *basins, int place);
 

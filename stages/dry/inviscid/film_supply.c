@@ -13,6 +13,13 @@
 //     own = surplus / taken, drawn = 0   where F < 0.
 // Both are 0 or more, so no reservoir ever gains. Between two solutions
 //     scale = sum of (1 - own) E / sum of drawn.
+//
+// Where a cluster has lost a throat since, and another supplies its basin, its level
+// falls until films bring what it evaporates. It hardly has to where they conduct well.
+// Where they do not it comes to its least first, and the cluster goes on losing liquid.
+// If nothing else fell, films would bring their conductance at the cluster times how
+// far it falls. Levels around it fall too, so that RESPONSE of this counts. What has
+// parted from the cluster gets the same share of what it evaporates.
 #include "film_supply.h"
 
 #include "basics/memory.h"
@@ -27,12 +34,12 @@
 
 // Flows are found to this part of the drying rate.
 static const double TOLERANCE = 1e-6;
-// Between two solutions films draw at most so much more from the sources that are left.
-static const double MOST_STRAY = 2;
-// They are found again before the step is over once films have failed to bring this
-// part of the drying rate, but not sooner than after such a part of the step: a film
-// that fails for a moment lets rings dry, which stay dry.
+// They are found again before the step is over once so much of the drying rate is not
+// brought, or from other sources than was found, but not sooner than after such a part
+// of the step.
 static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
+// From 0.03 to 0.3 times are about as exact; the more, the more often flows are found.
+static const double RESPONSE = 0.1;
 
 // After so many solutions the factor is forgotten, with and without checkpoints: a
 // state that is kept there needs none. At a usual step it would not last longer.
@@ -52,6 +59,9 @@ struct film_supply *film_supply_create(const struct emptying_times *times)
         .source = NEW_ARRAY(int, network->n_throat),
         .reached = NEW_ARRAY(bool, network->n_node),
         .floats = NEW_ARRAY(bool, network->n_throat),
+        .falls = NEW_ARRAY(bool, network->n_throat),
+        .brought = NEW_ARRAY(double, network->n_throat),
+        .response = NEW_ARRAY(double, network->n_throat),
         .level = NEW_ARRAY(struct compensated, times->n_place),
         .is_known = NEW_ARRAY(bool, times->n_place),
         .evaporates = NEW_ARRAY(double, times->n_place),
@@ -73,6 +83,9 @@ void film_supply_free(struct film_supply *films)
     free(films->source);
     free(films->reached);
     free(films->floats);
+    free(films->falls);
+    free(films->brought);
+    free(films->response);
     free(films->level);
     free(films->is_known);
     free(films->evaporates);
@@ -90,7 +103,7 @@ static double saturation_now(const struct occupancy *occupancy)
 static bool is_failing(const struct emptying_times *times)
 {
     const struct film_supply *films = times->films;
-    return films->lost + film_basins_failing(films->basins) >
+    return films->stray + film_basins_failing(films->basins) >
            MOST_FAILING * vapour_rate(&times->occupancy->vapour);
 }
 
@@ -210,6 +223,14 @@ static void pose(const struct emptying_times *times, const struct film_network *
     hold_highest(network, n_throat, least, flow->held, flow->level);
 }
 
+// What evaporates where nothing did before is brought as it comes.
+static void note_response(struct film_supply *films, int cluster, double taken,
+                          double surplus, double conductance)
+{
+    films->brought[cluster] = taken > 0 ? 1 - surplus / taken : 1;
+    films->response[cluster] = taken > 0 ? RESPONSE * conductance / taken : 0;
+}
+
 static void note_site(struct film_supply *films, int place, int n_throat, double taken,
                       bool held, double surplus)
 {
@@ -258,9 +279,11 @@ static void begin(struct emptying_times *times)
         films->own[p] = 1;
         films->drawn[p] = 0;
     }
+    for (int cluster = 0; cluster < times->occupancy->network->n_throat; cluster++)
+        films->falls[cluster] = false;
     films->n_source = 0;
     films->is_due = false;
-    films->lost = 0;
+    films->stray = 0;
     films->saturation = saturation_now(times->occupancy);
 }
 
@@ -319,6 +342,9 @@ void film_supply_find(struct emptying_times *times)
         films->level[network.place[i]] = flow.level[i];
         note_site(films, network.place[i], n_throat, taken[i], flow.held[i],
                   flow.surplus[i]);
+        if (network.place[i] < n_throat)
+            note_response(films, network.place[i], taken[i], flow.surplus[i],
+                          network.matrix.diagonal[i]);
     }
     find_basins(times, &flow, n_throat);
     films->solutions += n > 0;
@@ -331,6 +357,20 @@ void film_supply_find(struct emptying_times *times)
 }
 
 // --- rates -------------------------------------------------------------------------
+
+// What clusters lose that have lost a throat since the solution.
+static void update_falling(const struct emptying_times *times)
+{
+    struct film_supply *films = times->films;
+    for (int k = 0; k < times->n; k++) {
+        const int c = times->owner[k];
+        if (c < 0 || c >= times->occupancy->network->n_throat || !films->falls[c])
+            continue;
+        const double height = fmax(0, film_basins_height(films->basins, c));
+        const double brought = films->brought[c] + films->response[c] * height;
+        films->own[c] = fmin(1, fmax(0, 1 - brought));
+    }
+}
 
 // Sums are of positive numbers, but for the rounding of own.
 static void find_scale(struct emptying_times *times)
@@ -352,12 +392,14 @@ static void find_scale(struct emptying_times *times)
     if (!(drawn > 0) && brought > 0)
         for (int p = 0; p < times->n_place; p++)
             films->own[p] = 1;
-    films->is_due = brought > MOST_STRAY * drawn;
+    films->stray = brought - drawn;
+    films->is_due = !(drawn > 0) && brought > 0;
 }
 
 void film_supply_set_rates(struct emptying_times *times)
 {
     struct film_supply *films = times->films;
+    update_falling(times);
     find_scale(times);
     for (int k = 0; k < times->n; k++) {
         const int owner = times->owner[k];
@@ -374,7 +416,7 @@ static void set_apart(struct film_supply *films, int cluster)
 {
     films->own[cluster] = 1;
     films->drawn[cluster] = 0;
-    films->floats[cluster] = false;
+    films->floats[cluster] = films->falls[cluster] = false;
     films->is_known[cluster] = false;
     film_basins_set(films->basins, cluster, -1, 0, 0);
 }
@@ -385,7 +427,9 @@ static void let_float(struct emptying_times *times, int cluster, int parent, int
     struct film_supply *films = times->films;
     films->own[cluster] = 0;
     films->drawn[cluster] = 0;
-    films->floats[cluster] = true;
+    films->floats[cluster] = films->falls[cluster] = true;
+    films->brought[cluster] = films->brought[parent];
+    films->response[cluster] = films->response[parent];
     films->is_known[cluster] = true;
     films->level[cluster] = films->level[parent];
     film_basins_set(films->basins, cluster, basin,
@@ -402,15 +446,12 @@ static void choose_source(struct film_supply *films, int basin, double drawn)
     films->source[basin] = source;
     if (before >= 0 && before != source && films->drawn[before] > 0) {
         films->own[before] = films->drawn[before] = 0;
-        films->floats[before] = true;
+        films->floats[before] = films->falls[before] = true;
     }
-    if (source < 0) {
-        films->lost += drawn;
-        return;
-    }
+    if (source < 0) return;
     films->own[source] = 1;
     films->drawn[source] = drawn;
-    films->floats[source] = false;
+    films->floats[source] = films->falls[source] = false;
 }
 
 // Films may come to rings that no throat feeds any more.
@@ -467,10 +508,13 @@ void film_supply_state(struct emptying_times *times, struct checkpoint_stream *s
     stream_integers(stream, films->source, films->n_source, -1, network->n_throat - 1);
     stream_flags(stream, films->reached, network->n_node);
     stream_flags(stream, films->floats, network->n_throat);
+    stream_flags(stream, films->falls, network->n_throat);
+    stream_numbers(stream, films->brought, network->n_throat);
+    stream_numbers(stream, films->response, network->n_throat);
     stream_sums(stream, films->level, times->n_place);
     stream_flags(stream, films->is_known, times->n_place);
     stream_flags(stream, &films->is_due, 1);
-    stream_numbers(stream, &films->lost, 1);
+    stream_numbers(stream, &films->stray, 1);
     stream_numbers(stream, &films->saturation, 1);
     stream_long(stream, &films->solutions);
     film_basins_state(films->basins, stream);
@@ -493,6 +537,7 @@ bool film_supply_fits(const struct emptying_times *times)
     for (int l = 0; l < films->n_source; l++)
         fits &= films->source[l] < 0 || has_liquid(clusters, films->source[l]);
     for (int c = 0; c < n_throat; c++)
-        fits &= film_basins_of(films->basins, c) < 0 || has_liquid(clusters, c);
+        fits &= film_basins_of(films->basins, c) < 0 ? !films->falls[c]
+                                                     : has_liquid(clusters, c);
     return fits;
 }

@@ -19,15 +19,19 @@ struct film_supply {
     int *source; // (n_source) by basin, the cluster it draws from; -1: none is left
     struct film_basins *basins;
 
-    bool *reached;              // (n_node) films reach it: its rings keep their liquid
-    bool *floats;               // (n_throat) by cluster: films bring all it evaporates
+    bool *reached; // (n_node) films reach it: its rings keep their liquid
+    bool *floats;  // (n_throat) by cluster: films bring all it evaporates
+    bool *falls;   // (n_throat) one of a basin whose level has fallen to float since
+    // (n_throat) What films bring to it at the level it had, and what more by each unit
+    // of level that it falls, over what it evaporated then.
+    double *brought, *response;
     struct compensated *level;  // (n_place) cube of the menisci's radius, scaled
     bool *is_known;             // (n_place) the level is that of the last solution
     double *evaporates;         // (n_place) scaled, when last found; 0: no shares
     int32_t *curve;             // (n_node) nodes, near ones after each other
     struct film_factor *factor; // kept from one solution to the next
     bool is_due;                // reservoirs have changed so that flows must be found
-    double lost;                // drawn since from basins that have no cluster any more
+    double stray;               // what films bring now beyond what was drawn then
     double saturation;          // when last found
     bool failed;                // they were not
     int64_t solutions;          // so far

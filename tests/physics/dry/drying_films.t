@@ -109,6 +109,22 @@ for heavy in [], HEAVY:
            f"films that conduct well, flows found a few times {heavy}: throats empty in the same order",
            (same, file["summary"].attrs["film_solutions"]))
 
+# Where films conduct little, clusters that lose a throat go on losing liquid, and do not live on what others lose.
+def time_at(file):
+    saturation, time = file["history/saturation"][:], file["history/time"][:]
+    return np.interp(-np.arange(0.999, 0, -0.001), -saturation, time) / time[-1], time[-1]
+
+
+with dry(net, "rings=films", "films.conductance=0.01", "films.step=0") as file:
+    exact, end = time_at(file)
+for step in 0.01, 0.02:
+    with dry(net, "rings=films", "films.conductance=0.01", f"films.step={step}") as file:
+        times, last = time_at(file)
+        apart = abs(times * last / end - exact).max()
+        ok(apart < step and file["summary"].attrs["film_solutions"] < 200,
+           f"films that dry out, films.step={step}: times are right to that part of the drying time",
+           (apart, file["summary"].attrs["film_solutions"]))
+
 # ---- similar ------------------------------------------------------------------------------
 
 # Q = n C gamma / (3 beta nu) r^3 / L: with all lengths times 8 a body dries alike if nu / gamma is 8 times as large, as
