@@ -82,6 +82,13 @@ enum status check_moved(const struct pack_parameters *parameters, const char *gi
                       "pack.periodic: must be false along z for deposition: grains "
                       "need a floor");
     if (given && parameters->method == METHOD_RADIUS_EXPANSION &&
+        (domain->shape != DOMAIN_BOX || domain->cut != CUT_NONE))
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "pack.domain.shape: must be box, and nothing cut out, for radius_expansion "
+            "of %s, whose box shrinks with the grains (deposition keeps the shape)",
+            given);
+    if (given && parameters->method == METHOD_RADIUS_EXPANSION &&
         parameters->dynamics.target == TARGET_PRESSURE)
         return refuse(
             reason, STATUS_BAD_DATA,

@@ -98,6 +98,73 @@ int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES])
     return n;
 }
 
+// Whether HOLE, which grains lie around, and the cylinder DOMAIN have one axis and the
+// same ends: together they are a ring.
+static bool makes_ring(const struct domain *domain, const struct body *hole)
+{
+    const double slack = domain_rounding(domain);
+    const struct vector apart =
+        subtract(midpoint(hole->lower, hole->upper), domain->centre);
+    return domain->shape == DOMAIN_CYLINDER && hole->shape == BODY_CYLINDER &&
+           across(apart.x, apart.y) <= slack &&
+           fabs(hole->lower.z - domain->lower.z) <= slack &&
+           fabs(hole->upper.z - domain->upper.z) <= slack;
+}
+
+static bool cut_body(struct domain *domain, const struct body *hole)
+{
+    const bool first = domain->cut == CUT_NONE;
+    domain->cut = hole->shape == BODY_BOX        ? CUT_BOX
+                  : hole->shape == BODY_CYLINDER ? CUT_CYLINDER
+                                                 : CUT_SPHERE;
+    domain->cut_lower = hole->lower;
+    domain->cut_upper = hole->upper;
+    domain->cut_centre = midpoint(hole->lower, hole->upper);
+    domain->cut_radius = 0.5 * (hole->upper.x - hole->lower.x);
+    return first;
+}
+
+// The outer wall. What the box has beyond it holds nothing: the box ends with BODY.
+static bool shape_by(struct domain *domain, const struct body *body)
+{
+    if (domain->shape != DOMAIN_BOX || body->shape == BODY_BOX) return false;
+    const double slack = domain_rounding(domain);
+    for (int axis = 0; axis < 3; axis++)
+        if (component(body->lower, axis) < component(domain->lower, axis) - slack ||
+            component(body->upper, axis) > component(domain->upper, axis) + slack)
+            return false;
+    domain->shape = body->shape == BODY_CYLINDER ? DOMAIN_CYLINDER : DOMAIN_SPHERE;
+    domain->lower = body->lower;
+    domain->upper = body->upper;
+    domain->centre = midpoint(body->lower, body->upper);
+    domain->radius = 0.5 * (body->upper.x - body->lower.x);
+    return true;
+}
+
+bool domain_of(const struct packing *packing, int dimensions, struct domain *domain)
+{
+    *domain = (struct domain){.dimensions = dimensions,
+                              .lower = packing->lower,
+                              .upper = packing->upper,
+                              .centre = midpoint(packing->lower, packing->upper)};
+    for (int axis = 0; axis < 3; axis++)
+        domain->periodic[axis] = packing->periodic[axis];
+    bool known = true;
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body *body = &packing->body[k];
+        if (body->shape == BODY_DISC) domain->dimensions = 2;
+        if (body->within) {
+            known = shape_by(domain, body) && known;
+        } else if (makes_ring(domain, body)) {
+            domain->shape = DOMAIN_RING;
+            domain->inner_radius = 0.5 * (body->upper.x - body->lower.x);
+        } else {
+            known = cut_body(domain, body) && known;
+        }
+    }
+    return known;
+}
+
 struct vector domain_wrap(const struct domain *domain, struct vector point)
 {
     for (int axis = 0; axis < 3; axis++) {

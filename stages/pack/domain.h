@@ -90,6 +90,10 @@ bool domain_holds(const struct domain *domain, struct vector centre, double radi
 // grains and one that they lie around. For the artifact and the stages behind.
 int domain_bodies(const struct domain *domain, struct body body[MOST_BODIES]);
 
+// The inverse: the domain that the box and the bodies of PACKING bound. False when no
+// domain is bounded so (two bodies cut out, a box within the box).
+bool domain_of(const struct packing *packing, int dimensions, struct domain *domain);
+
 // A point evenly distributed where a grain of this radius fits wholly. False when the
 // cut leaves none that could be found. Draws from RANDOM only; where the box repeats,
 // over its whole edge.

@@ -101,6 +101,9 @@ double fitting_size(const struct packing *packing)
             const double at = wall_position(packing, wall);
             fits = fmin(fits, (wall % 2 ? at - x : x - at) / packing->radius[i]);
         }
+    for (int i = 0; i < packing->n_particle; i++)
+        fits = fmin(fits, depth_in_bodies(packing, packing->position[i]) /
+                              packing->radius[i]);
     return fits;
 }
 

@@ -7,9 +7,10 @@
 #include "parameters/stage.h"
 
 // Reads the grains of INPUT (standard input where none is named), scaled to m by
-// import_scale, and the box they lie in as *DOMAIN; appends their provenance to INPUTS.
-// Grains keep their bonds if INPUT is a packing. Ends the program: 65 for a domain that
-// is no box, for sides that cross and for grains that cannot be read, 66 for no input.
+// import_scale, and what bounds them as *DOMAIN and in the packing; appends their
+// provenance to INPUTS. Grains keep their bonds if INPUT is a packing. Ends the program:
+// 65 for a domain that cannot be, for sides that cross and for grains that cannot be
+// read, 66 for no input.
 // The caller frees the packing.
 struct packing make_import(const struct invocation *invocation,
                            const struct pack_parameters *parameters, json_t *inputs,

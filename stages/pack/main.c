@@ -328,13 +328,13 @@ int main(int argc, char **argv)
         packing.n_bond = 0; // given grains lose their bonds as they move
         make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
     }
+    packing.n_body = domain_bodies(&domain, packing.body);
     take_slab(&parameters, &domain, &packing);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);
     if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
-    if (parameters.method != METHOD_IMPORT)
-        packing.n_body = domain_bodies(&domain, packing.body);
+    packing.n_body = domain_bodies(&domain, packing.body);
     write_packing(&packing, &domain, &contacts, &invocation, inputs, &parameters,
                   &reached);
 

@@ -92,11 +92,14 @@ const struct parameter pack_table[] = {
          "move, a cube for the count at the porosity expected (import: as for lower)"},
     {"domain.shape", PARAMETER_CHOICE, "1", "\"box\"", AT(domain.shape),
      .choices = "box|cylinder|ring|sphere",
-     .text = "region in which the grains lie wholly; cylinder and ring stand along z; "
-             "dimensions=2: box or sphere (a disc)"},
+     .text =
+         "region in which the grains lie wholly; cylinder and ring stand along z; "
+         "dimensions=2: box or sphere (a disc); box, with an INPUT that has another: "
+         "that"},
     {"domain.centre", PARAMETER_POINT, "m", "null", AT(domain.centre),
      .text =
-         "of a cylinder, ring or sphere; null: so that its box begins at the origin"},
+         "of a cylinder, ring or sphere; null: so that its box begins at the origin, "
+         "or, of grains of INPUT, in the middle of their box"},
     {"domain.radius", PARAMETER_NUMBER, "m", "null", AT(domain.radius), ABOVE(0),
      .text = "of a cylinder, ring (outer) or sphere"},
     {"domain.inner_radius", PARAMETER_NUMBER, "m", "null", AT(domain.inner_radius),

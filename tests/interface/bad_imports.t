@@ -132,7 +132,7 @@ for settings, line in [
         (["frame=1"], "grains: frame: must be below 1, the frames there are, got 1"),
         (["frame=-2"], r"pack.frame: must be from -1 to 1e\+12, got -2"),
         (["domain.cut.shape=box"],
-         "pack.domain.shape: must be box, and nothing cut out, for import")]:
+         "pack.domain.cut.upper: must be given and above pack.domain.cut.lower along x")]:
     imported(f"a dump with {settings[0]} is refused", good, line, "--set", *settings)
 
 done()

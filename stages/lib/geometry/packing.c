@@ -104,6 +104,18 @@ double packing_domain_volume(const struct packing *packing)
     return room - holes;
 }
 
+double depth_in_bodies(const struct packing *packing, struct vector x)
+{
+    double depth = HUGE_VAL;
+    for (int k = 0; k < packing->n_body; k++) {
+        const struct body body = body_near(packing, k, x);
+        const double apart = norm(subtract(body_nearest(&body, x), x));
+        const bool inwards = body_holds(&body, x) == (body.within == 1);
+        depth = fmin(depth, inwards ? apart : -apart);
+    }
+    return depth;
+}
+
 double *copy_bond_strengths(const struct packing *packing)
 {
     if (!packing->bond_strength) return NULL;

@@ -81,6 +81,10 @@ struct vector nearest_on_wall(const struct packing *packing, int wall, struct ve
 // one, not packing->body, where a place has to do with a body.
 struct body body_near(const struct packing *packing, int k, struct vector x);
 
+// How far X is from the surfaces of the bodies, inwards, m; below 0 beyond one of them.
+// HUGE_VAL without bodies. O(n_body).
+double depth_in_bodies(const struct packing *packing, struct vector x);
+
 // From something in the box to what it repeats IMAGE boxes away; m. Each component is a
 // whole number of edges.
 struct vector image_offset(const struct packing *packing, struct image image);

@@ -88,6 +88,12 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
             facts->largest, facts->largest / facts->median);
 }
 
+// Of grains in a body the walls need not be those of the box.
+static const char *or_domain(const struct packing_facts *facts)
+{
+    return facts->bounded ? " (round walls: pack.domain)" : "";
+}
+
 // The gravest of three only: a grain outside has its centre outside, too.
 static void judge_places(const struct packing_facts *facts, struct findings *findings)
 {
@@ -103,16 +109,17 @@ static void judge_places(const struct packing_facts *facts, struct findings *fin
             findings, FINDING_IMPOSSIBLE, "outside",
             "/particles/position: row %d: the grain is wholly outside the box, as %d "
             "of "
-            "%d are: leave them out, or let pack.lower and pack.upper take them in",
-            facts->first_outside, facts->outside, facts->n);
+            "%d are: leave them out, or let pack.lower and pack.upper take them in%s",
+            facts->first_outside, facts->outside, facts->n, or_domain(facts));
     else if (facts->centres_outside)
         add_finding(
             findings, FINDING_WRONG, "outside",
             "/particles/position: row %d: the centre is outside the box, as those of "
             "%d "
             "of %d grains are: leave them out, or let pack.lower and pack.upper take "
-            "them in",
-            facts->first_centre_outside, facts->centres_outside, facts->n);
+            "them in%s",
+            facts->first_centre_outside, facts->centres_outside, facts->n,
+            or_domain(facts));
     else if (facts->cut)
         add_finding(
             findings, FINDING_NOTE, "cut",
@@ -210,7 +217,7 @@ static void judge_room(const struct packing_facts *facts, struct findings *findi
                     "%.0f %% of the box is more than %.3g m from every grain: a body "
                     "that is no box, or hollow, or whose top a few grains stand out "
                     "of. The empty part would fill with liquid: cut a box out of the "
-                    "body (docs/your-grains.md)",
+                    "body (docs/your-grains.md), or say its shape by pack.domain",
                     100 * facts->empty, facts->far);
     else
         say_ends(facts, low, high, findings);

@@ -3,7 +3,7 @@
 // extent, grains beyond walls, empty space (share of places further than `far` from any
 // grain), coincident and overlapping pairs, free grains. In code order
 //     beyond_walls = 1 - (distance of the centre from the wall, inwards) / radius,
-//     porosity = 1 - sum of 4/3 pi r^3 / volume of the box,
+//     porosity = 1 - sum of 4/3 pi r^3 / volume of the box, or of the bodies in it,
 //     far = max(2 median, cbrt(volume of the box / n)),
 //     overlap = (r_i + r_j - distance) / min(r_i, r_j).
 // Empty space is looked for at about 2 edge / far places along each edge; not where
@@ -47,8 +47,8 @@ static void measure_sizes(const struct packing *packing, struct packing_facts *f
 
 // ---- the box ------------------------------------------------------------------------
 
-// How far the surface of grain I reaches beyond its worst wall, of its radius: 1 when
-// its centre lies on the wall, 2 when all of it is outside.
+// How far the surface of grain I reaches beyond its worst wall, flat or round, of its
+// radius: 1 when its centre lies on the wall, 2 when all of it is outside.
 static double beyond_walls(const struct packing *packing, int i)
 {
     double worst = -HUGE_VAL;
@@ -58,7 +58,8 @@ static double beyond_walls(const struct packing *packing, int i)
         const double at = wall_position(packing, wall);
         worst = fmax(worst, 1 - (wall % 2 ? at - x : x - at) / packing->radius[i]);
     }
-    return worst;
+    const double depth = depth_in_bodies(packing, packing->position[i]);
+    return fmax(worst, 1 - depth / packing->radius[i]);
 }
 
 static void count_one(int *count, int *first, int i)
@@ -106,6 +107,19 @@ static void measure_extent(const struct packing *packing, struct packing_facts *
         const double r = is_auxiliary(packing, i) ? 0 : packing->radius[i];
         facts->porosity -= 4 * M_PI / 3 * (r / edge.x) * (r / edge.y) * (r / edge.z);
     }
+    facts->bounded = packing->n_body > 0;
+    if (!facts->bounded) return;
+    struct packing body = *packing; // without the room of auxiliary grains
+    body.lower = facts->box.lower;
+    body.upper = facts->box.upper;
+    for (int k = 0; k < body.n_body; k++) { // cylinders end with the box
+        struct body *one = &body.body[k];
+        if (one->shape != BODY_CYLINDER) continue;
+        one->lower.z = fmax(one->lower.z, body.lower.z);
+        one->upper.z = fmin(one->upper.z, body.upper.z);
+    }
+    facts->porosity =
+        1 - (1 - facts->porosity) * (box_volume(edge) / packing_domain_volume(&body));
 }
 
 // ---- empty space --------------------------------------------------------------------
