@@ -118,6 +118,49 @@ static void copy_packing(const struct packing *from, struct packing *to)
     move_inside(to);
 }
 
+// Moves PACKING, so that its lower corner is at the origin: places have their digits
+// there.
+static void move_to_origin(struct packing *packing)
+{
+    const struct vector from = packing->lower;
+    for (int i = 0; i < packing->n_particle; i++)
+        packing->position[i] = subtract(packing->position[i], from);
+    for (int k = 0; k < packing->n_body; k++) {
+        packing->body[k].lower = subtract(packing->body[k].lower, from);
+        packing->body[k].upper = subtract(packing->body[k].upper, from);
+    }
+    packing->upper = subtract(packing->upper, from);
+    packing->lower = (struct vector){0};
+}
+
+// Puts the grains where the generators are: on their grid, to which nodes belong.
+static void take_generators(const struct generators *generators,
+                            struct packing *packing)
+{
+    for (int i = 0; i < generators->n; i++)
+        if (is_grain(generators, i))
+            packing->position[generators->origin[i].base] =
+                scale(generators->unit, generators->point[i].at);
+}
+
+// Moves NETWORK, whose packing is at the origin, to where PACKING is; what lies on an
+// upper wall to exactly where the box says. (Where auxiliary grains are, nodes of an
+// upper wall may lie below it.)
+static void move_back(const struct packing *packing, struct network *network)
+{
+    const struct vector wall = network->packing.upper;
+    for (int i = 0; i < network->n_node; i++) {
+        const struct vector from = network->node_position[i];
+        struct vector *at = &network->node_position[i];
+        *at = add(packing->lower, from);
+        for (int axis = 0; axis < 3; axis++)
+            if (component(from, axis) == component(wall, axis))
+                set_component(at, axis, component(packing->upper, axis));
+    }
+    packing_free(&network->packing);
+    copy_packing(packing, &network->packing);
+}
+
 // Moves the nodes to the network, in m.
 static void move_nodes(struct nodes *nodes, const struct generators *generators,
                        struct network *network)
@@ -204,7 +247,9 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
     if (!status && report->hidden) status = check_distinct(&generators, reason);
     if (!status) {
         copy_packing(packing, &network->packing);
+        if (packing->n_body) move_to_origin(&network->packing);
         assemble(&generators, &triangulation, &nodes, how->clearance, network);
+        if (packing->n_body) take_generators(&generators, &network->packing);
     }
     nodes_free(&nodes);
     triangulation_free(&triangulation);
@@ -222,6 +267,7 @@ enum status tessellate(const struct packing *packing, const struct tessellation 
         status = refuse(reason, STATUS_BAD_DATA,
                         "boundary=eliminate leaves no cell: the box cuts all of them");
     if (!status && how->layer) reduce_to_plane(network);
+    if (!status && packing->n_body) move_back(packing, network);
     report->n_closed = count_closed(network);
     if (status) network_free(network);
     return status;

@@ -264,6 +264,28 @@ def check_chain(folder):
         ok(all(np.array_equal(one[n][()], other[n][()]) for n in names), "exported and imported")
 
 
+def check_far(folder):
+    """A thousand of its sizes from the origin a body has the same throats, and dries in the same order: throats
+    that are narrowest at one node on the wall are equally wide there, too."""
+    here, far = os.path.join(folder, "here.h5"), os.path.join(folder, "far.h5")
+    for title, shape in (("a cylinder", CYLINDER), ("a ring", RING)):
+        run("pack", "-q", *sets("method=radius_expansion", "count=200", "radius=0.05", "dynamics.friction=0", "seed=3", *shape), "-o", here)
+        run("pack", "-q", *sets("method=import"), here, "-o", far)
+        with h5py.File(far, "r+") as file:
+            for name in ("particles/position", "domain/lower", "domain/upper", "domain/bodies/lower", "domain/bodies/upper"):
+                file[name][...] += [1000, -700, 400]
+        orders = []
+        for packing in (here, far):
+            run("tessellate", "-q", packing, "-o", packing + ".net")
+            run("dry", "-q", packing + ".net", "-o", packing + ".dry")
+            with h5py.File(packing + ".dry") as file:
+                orders.append((file["events/throat"][:], file["throats/radius"][:], file["throats/nodes"][:]))
+        (one, radius, nodes), (other, far_radius, far_nodes) = orders
+        alike = np.array_equal(nodes, far_nodes) and np.allclose(radius, far_radius, rtol=1e-9, atol=1e-12)
+        ok(alike and np.array_equal(one, other), f"{title}: far from the origin as at it",
+           (alike, np.count_nonzero(one != other), len(one)) if alike else alike)
+
+
 def tessellate_refuses(title, pattern, folder, *settings, grains=None):
     path = os.path.join(folder, "refused.h5")
     run("pack", "-q", *sets(*settings), "-o", path)
@@ -282,6 +304,7 @@ with scratch() as folder:
     check_scales(folder)
     check_elimination(folder)
     check_chain(folder)
+    check_far(folder)
     tessellate_refuses("a grain outside the cylinder", "row 0: the centre must be in the cylinder", folder,
                        *loose(20, *CYLINDER), grains=[[0.05, 0.05, 0.5]])
     tessellate_refuses("a grain in the core of a ring", "row 0: the centre must be outside the cylinder",
