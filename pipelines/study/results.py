@@ -85,8 +85,7 @@ def summarise(rows, study):
     for number_, (values, mine) in enumerate(zip(study.points, by_point), 1):
         points.append({"point": number_, "values": values, "runs": len(mine), "done": sum(r["status"] == "done" for r in mine),
                        "failed": sum(r["status"] == "failed" for r in mine),
-                       "measures": {m.name: described([r[m.name] for r in mine if r[m.name] is not None], confidence)
-                                    for m in study.measures},
+                       "measures": {m.name: described(values_of(m, mine), confidence) for m in study.measures},
                        "reference": {r["measure"]: r["value"] for r in study.said.get("reference", []) if fits(values, r.get("at", {}))}})
     tests = [test for said in study.said.get("compare", []) for test in comparisons(said, study, by_point)]
     return {"study": study.name, "confidence": confidence, "points": points, "tests": tests}
@@ -102,17 +101,27 @@ def comparisons(said, study, by_point):
             continue
         first, second = by_point[study.points.index(base)], by_point[k]
         yield {"point": k + 1, "with": study.points.index(base) + 1, "axis": axis, "paired": paired,
-               "measures": {m.name: compared(*values_of(m.name, first, second, study if paired else None), paired) for m in study.measures}}
+               "measures": {m.name: compared(*(pairs_of(m, first, second, study) if paired else (values_of(m, first), values_of(m, second))),
+                                             paired) for m in study.measures}}
 
 
-def values_of(name, first, second, paired):
-    """The values of measure NAME of both groups of rows; PAIRED, a study: of its runs that have a twin in both."""
-    if not paired:
-        return [r[name] for r in first if r[name] is not None], [r[name] for r in second if r[name] is not None]
-    twin = lambda r: paired.runs[r["run"] - 1].twin
-    other = {twin(r): r[name] for r in second if r[name] is not None}
-    pairs = [(r[name], other[twin(r)]) for r in first if r[name] is not None and twin(r) in other]
-    return [a for a, _ in pairs], [b for _, b in pairs]
+def source(measure, line):
+    """The artifact that the value of MEASURE in a row is from: runs that share it are one draw of it."""
+    return line["artifacts"][measure.kind]
+
+
+def values_of(measure, rows):
+    """The values of MEASURE, one of each artifact."""
+    return list({source(measure, r): r[measure.name] for r in rows if r[measure.name] is not None}.values())
+
+
+def pairs_of(measure, first, second, study):
+    """The values of MEASURE in both groups of rows, of runs that have a twin in both; one of each pair of artifacts."""
+    twin = lambda r: study.runs[r["run"] - 1].twin
+    there = {twin(r): r for r in second if r[measure.name] is not None}
+    pairs = [(r, there[twin(r)]) for r in first if r[measure.name] is not None and twin(r) in there]
+    once = {(source(measure, a), source(measure, b)): (a[measure.name], b[measure.name]) for a, b in pairs}
+    return [a for a, _ in once.values()], [b for _, b in once.values()]
 
 
 def write_summary(summary, study, folder):

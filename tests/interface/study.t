@@ -161,6 +161,30 @@ for name in "folders", "several":
 ok(sorted({r["grains"] for r in table("folders")}) == [at("narrow", "grains.h5"), at("wide", "grains.h5")],
    "files of one name are told apart by their folders", table("folders"))
 
+# Seeds of strengths leave the packing as it is: two packings are two draws of it, in however many runs.
+write("shared.json", {"scene": "layer.json", "liquid": False, "packings": ["wide/grains.h5", "narrow/grains.h5"],
+                      "seeds": {"count": 3, "keys": ["dem-replay.bond.strength.seed"]},
+                      "set": {"dem-replay.bond.strength.distribution": "normal"},
+                      "axes": [{"key": "pack.touching_gap", "values": [1e-6, 0.5]}],
+                      "measure": ["packing:summary/contacts", "response:summary/largest_displacement"],
+                      "compare": [{"axis": "touching_gap", "with": 1e-6}, {"axis": "touching_gap", "with": 1e-6, "paired": False}]})
+fine, *_ = study("make", "shared.json")
+with open(at("runs/shared/summary.json"), encoding="utf-8") as lines:
+    told = json.load(lines)
+point = told["points"][0]["measures"]
+contacts = [int(h5py.File(at("runs/shared", path))["summary"].attrs["contacts"]) for path in
+            {r["artifacts"]["packing"] for r in json.loads(read(at("runs/shared/runs.json")))["runs"] if r["point"] == 1}]
+ok(fine and len(contacts) == 2 and point["summary.contacts"]["runs"] == 2 and point["summary.largest_displacement"]["runs"] == 6
+   and np.isclose(point["summary.contacts"]["sd"], np.std(contacts, ddof=1)),
+   "what several runs share counts once", (contacts, point))
+paired, alone = (test["measures"]["summary.contacts"] for test in told["tests"])
+# Student's and Welch's p with 1 degree of freedom, or so, by the closed form of Cauchy's distribution
+far = [run_["summary.contacts"] for run_ in json.loads(read(at("runs/shared/runs.json")))["runs"] if run_["point"] == 2]
+far = list(dict.fromkeys(far))
+apart = np.subtract(far, [next(c for c in contacts if (c > min(contacts)) == (f > min(far))) for f in far])
+p = 1 - 2 / np.pi * np.arctan(abs(apart.mean()) / (apart.std(ddof=1) / np.sqrt(2)))
+ok(np.isclose(paired["student_p"], p) and alone["welch_p"] > 0.1, "nor do tests count it more often", (paired, p, alone))
+
 # ---- one value more, one value other, a table of runs -------------------------------------------------
 
 fine, counts, *_ = study("make", "small.json", "--seeds=1,2,3")
