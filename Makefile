@@ -254,6 +254,13 @@ shown = @$(if $1,cat $1;) $(if $2,echo 'picture$(if $(word 2,$2),s): $2')
 first_pipelines := $(wildcard pipelines/run/run.mk pipelines/study/study.mk $(addprefix pipelines/studies/,networks-k/study.mk coupled/study.mk))
 include $(first_pipelines) $(filter-out $(first_pipelines),$(wildcard pipelines/studies/*/study.mk))
 
+# Studies with scenes of their own, and so with grains of their own: others would go unheard.
+own_scenes := boundary-layers boundary-study bridges calibration collapse coupled critical-bonds critical-thickness curves drag drainage \
+	fronts-k networks networks-k packings percolation rate-drop rings shear shear-depth sobol wet-dry
+$(foreach name,SCENE IMPORT,$(if $(filter command,$(origin $(name))),$(foreach goal,$(filter $(own_scenes),$(MAKECMDGOALS)),$(error \
+	$(name): make $(goal) takes none, it has scenes of its own (make run, demo, study, craquelure, large take grains)))))
+$(if $(and $(filter command,$(origin SCENE)),$(filter large,$(MAKECMDGOALS))),$(error SCENE: make large takes LARGE_SCENE in its place))
+
 ifneq ($(filter $(pipeline_goals),$(MAKECMDGOALS)),)
 # A file, for there may be more recipes than a command line holds; this make's own, for there may
 # be several at work.

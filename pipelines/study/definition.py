@@ -250,7 +250,7 @@ def drawn_key(scene_of, sets, grains, path, made):
         if used(section, grains):
             return [key]
     return refuse(65, f"{path}: seeds: the scene draws nothing in the stages of this study (neither radii of throats nor grains nor strengths); "
-                  "seeds.keys says what takes them, packings gives other grains")
+                  "seeds.keys says what takes them, packings gives other grains; one run needs no seeds")
 
 
 def seeds_of(said, replaced, path):
@@ -305,6 +305,8 @@ def read_file(path):
         refuse(65, f"{path}: {problem.lstrip(': ')}")
     if "axes" in said and "runs" in said:
         refuse(65, f"{path}: has axes beside runs")
+    if "packings" in said and "runs" in said:
+        refuse(65, f"{path}: has packings beside runs: a column import has the grains of each")
     return said
 
 
@@ -336,18 +338,19 @@ def table_runs(said, path, seeds, keys, scene, made):
     """Axes, points and runs of a table."""
     table = located(said["runs"], path)
     axes, points, rows = table_points(table, lambda key: key.endswith(".seed"))
-    runs = []
+    common, runs = said.get("import") and located(said["import"], path), []
     for number, (point, values, row) in enumerate(rows, 1):
         sets = {key: value for key, value in row.items() if key not in SPECIAL}
         of_row = row.get("scene", scene)
         if not of_row:
             refuse(65, f"{table}: row {number}: no scene: a column scene, or SCENE=")
-        here = keys or (drawn_key(lambda stage: of_row, sets, row.get("import"), path, made) if seeds != [None] else [])
+        grains = row.get("import", common)
+        here = keys or (drawn_key(lambda stage: of_row, sets, grains, path, made) if seeds != [None] else [])
         for seed in seeds:
             own = next((v for k, v in sets.items() if k.endswith(".seed")), None) if seed is None else seed
             mine = {**said.get("set", {}), **sets, **{k: seed for k in here}}
             twin = tuple(sorted((k, str(v)) for k, v in mine.items() if k.endswith(".seed")))
-            runs.append(Run(len(runs) + 1, point, values, own, row.get("import"), mine, twin, of_row, str(row.get("run", ""))))
+            runs.append(Run(len(runs) + 1, point, values, own, grains, mine, twin, of_row, str(row.get("run", ""))))
     return axes, points, runs
 
 
@@ -372,9 +375,22 @@ def axes_runs(said, path, seeds, keys, scene, made, most):
     return axes, [values for values, _ in points], runs, keys
 
 
-def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS):
-    """The study of the file PATH; SEEDS, SCENE and SETS (pairs) take the place of its own."""
+def take_grains(said, path, grains):
+    """Puts the file GRAINS in place of those that a study names, which it may not vary then."""
+    if not os.path.isfile(grains):
+        refuse(66, f"{grains}: no such file")
+    varied = [key for axis in said.get("axes", []) for key in (axis.get("key"), *axis.get("keys", []), *axis.get("zip", {}))]
+    varied += read_table(located(said["runs"], path))[0] if "runs" in said else []
+    if "packings" in said or "import" in varied:
+        refuse(65, f"{path}: has grains of its own for several runs: --import (IMPORT) gives all the same")
+    said["import"] = os.path.realpath(grains)
+
+
+def read_study(path, seeds=None, scene=None, sets=(), most=MOST_RUNS, grains=None):
+    """The study of the file PATH; SEEDS, SCENE, SETS (pairs) and GRAINS take the place of its own."""
     said = read_file(path)
+    if grains:
+        take_grains(said, path, grains)
     check_counts(said, path, most)
     said["set"] = {**said.get("set", {}), **dict(sets)}
     for key, value in said["set"].items():

@@ -2,7 +2,7 @@
 # Studies as data: runs of a scene with other values, measured and compared (docs/studies.md).
 #
 #     make study STUDY=mine.json          ->  build/runs/mine/summary.md, runs.tsv, figure.svg, study.html
-#     make study STUDY=runs.tsv SCENE=mine.json
+#     make study STUDY=runs.tsv SCENE=mine.json IMPORT=grains.txt
 #     make study-table STUDY=mine.json    ->  tables of what is there, while another make is at it
 #     make strength SEEDS="1 2 3"         ->  a study of pipelines/studies, with other seeds
 #     make strength SET="force-protocol.force_scale=1 dem-replay.engine=quasi-static"
@@ -14,7 +14,8 @@ NAME ?=# of the folder, in place of the study's
 MOST_RUNS ?=
 
 study_words = --runs=$(call quoted,$(RUNS)) $(if $(strip $(SEEDS)),--seeds=$(call quoted,$(strip $(SEEDS)))) $(foreach \
-	s,$(SET),--set=$(call quoted,$s)) $(NAME:%=--name=$(call quoted,%)) $(MOST_RUNS:%=--most-runs=%) $(if $(strip $(SCENE)),--scene=$(SCENE))
+	s,$(SET),--set=$(call quoted,$s)) $(NAME:%=--name=$(call quoted,%)) $(MOST_RUNS:%=--most-runs=%) $(if $(strip $(SCENE)),--scene=$(SCENE)) \
+	$(IMPORT:%=--import=%)
 study_program = THREADS=$(call quoted,$(THREADS)) RUN=$(call quoted,$(RUN)) pipelines/study/study
 known_studies := $(basename $(notdir $(wildcard pipelines/studies/*.json)))
 

@@ -438,6 +438,17 @@ is 'one more: nothing else again' '4 crackstats 2 dem-replay 2 dry 2 force-proto
 make run SCENE=samples/stiff-5x5x10.json >said 2>&1
 is 'nor the network, for a run of the scene' '1 crackstats 1 dem-replay 1 dry 1 force-protocol' "$(sort ran | uniq -c | names)"
 
+# --- studies with scenes of their own -------------------------------------------------------
+
+touch grains.txt
+for goal in coupled curves percolation; do
+    for given in SCENE=samples/stiff-5x5x10.json IMPORT=grains.txt; do
+        is "make $goal ${given%=*}= is refused" "${given%=*}: make $goal takes none" "$(make -n $goal "$given" 2>&1 | grep -o "${given%=*}: make .*none")"
+    done
+done
+is 'make large takes another scene by LARGE_SCENE' LARGE_SCENE "$(make -n large SCENE=$scene 2>&1 | grep -o LARGE_SCENE)"
+is 'and its grains by IMPORT' 1 "$(make -n large LARGE_SCENE=$scene IMPORT=grains.txt | grep -c 'pack.* grains.txt')"
+
 # --- layers that crack ----------------------------------------------------------------------
 
 is 'a layer of no scene' 'nowhere.json: no such file' "$(make -n craquelure SCENE=nowhere.json 2>&1 | grep -o 'nowhere.*file')"

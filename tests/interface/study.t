@@ -185,6 +185,22 @@ apart = np.subtract(far, [next(c for c in contacts if (c > min(contacts)) == (f 
 p = 1 - 2 / np.pi * np.arctan(abs(apart.mean()) / (apart.std(ddof=1) / np.sqrt(2)))
 ok(np.isclose(paired["student_p"], p) and alone["welch_p"] > 0.1, "nor do tests count it more often", (paired, p, alone))
 
+# Grains named when the study is called, in place of its own; in a table, and in one that a study names.
+def grains_of(name):
+    with open(at("runs", name, "runs.json"), encoding="utf-8") as lines:
+        return [len(h5py.File(at("runs", name, r["artifacts"]["packing"]))["particles/radius"]) for r in json.load(lines)["runs"]]
+
+
+here = {"liquid": False, "measure": ["bonds"], "scene": "layer.json"}
+write("taken.json", {**here, "import": "wide/grains.h5", "axes": [{"key": "dem-replay.friction", "values": [0.5, 0.4]}]})
+write("rows.tsv", "dem-replay.friction\n0.5\n0.4\n")
+write("rows.json", {**here, "import": "wide/grains.h5", "runs": "rows.tsv"})
+given = [(study("make", name, *words)[0], grains_of(name.split(".")[0])) for name, words in
+         (("taken.json", []), ("rows.json", []), ("taken.json", ["--import=narrow/grains.h5"]), ("rows.json", ["--import=narrow/grains.h5"]))]
+ok(given == [(True, [36, 36])] * 2 + [(True, [18, 18])] * 2, "grains are those of the study, or those it is called with", given)
+fine, _, _, error = study("plan", "folders.json", "--import=narrow/grains.h5", status=65)
+ok(fine and "has grains of its own for several runs" in error, "a study of several packings takes no other", error)
+
 # ---- one value more, one value other, a table of runs -------------------------------------------------
 
 fine, counts, *_ = study("make", "small.json", "--seeds=1,2,3")

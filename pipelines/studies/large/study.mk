@@ -3,6 +3,7 @@
 #
 #     make large                  ->  build/runs/large/large.md, large.png
 #     make large GRAINS=5000
+#     make large LARGE_SCENE=mine.json IMPORT=grains.txt  ->  build/runs/large-mine/
 #     make large LARGE_SCENE=samples/column-1000000.json  ->  build/runs/large-column-1000000/ (an hour of one core, 6 GiB)
 
 LARGE_SCENE ?= samples/irregular-50000.json
@@ -17,7 +18,7 @@ large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage
 
 ifneq ($(call asked,large,$(large_folder)),)
 $(if $(GRAINS),$(call must,GRAINS,$(whole),a whole number))
-$(call large_step,packing.h5,pack,$(PACK),$(GRAINS:%=count=%),)
+$(call step,$(large_folder)/packing.h5,pack,pipelines/studies/large/timed $(PACK),$(LARGE_SCENE),$(GRAINS:%=count=%),$(IMPORT))
 $(call large_step,tessellation.h5,tessellate,$(TESSELLATE),,packing.h5)
 $(call large_step,network.h5,merge-nodes,$(MERGE_NODES),,tessellation.h5)
 $(call large_step,drying.h5,dry,$(DRY),,network.h5)
