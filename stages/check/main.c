@@ -155,9 +155,9 @@ static void bond_text(struct packing *packing, const struct contacts *contacts,
     bond_contacts(packing, contacts);
 }
 
-// Lengths in metres, the liquid's surface tension.
+// Lengths in metres, the liquid's surface tension. UNIT: as facts have it.
 static struct packing read_input(const char *path, struct check_parameters *parameters,
-                                 json_t *inputs)
+                                 double *unit, json_t *inputs)
 {
     conditions_require(&parameters->conditions, 1u << FLUID_SURFACE_TENSION, "check");
     parameters->material.surface_tension =
@@ -165,7 +165,8 @@ static struct packing read_input(const char *path, struct check_parameters *para
     parameters->material.contact_angle = parameters->conditions.contact_angle;
     bool has_box;
     struct packing packing =
-        read_grains(path, NULL, parameters->frame, &has_box, inputs);
+        read_grains(path, NULL, parameters->frame, &has_box, unit, inputs);
+    if (parameters->import_scale != 1) *unit = 0;
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
                    has_box);
     refuse_large_radii(&packing, path);
@@ -177,12 +178,15 @@ int main(int argc, char **argv)
     struct check_parameters parameters = {.conditions = conditions_unset()};
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
-    struct packing packing = read_input(invocation.inputs[0], &parameters, inputs);
+    double unit;
+    struct packing packing =
+        read_input(invocation.inputs[0], &parameters, &unit, inputs);
     const double gap = parameters.touching_gap;
     struct contacts contacts = find_contacts(&packing, gap);
     bond_text(&packing, &contacts, inputs);
 
-    const struct packing_facts facts = packing_facts(&packing, &contacts, gap);
+    struct packing_facts facts = packing_facts(&packing, &contacts, gap);
+    facts.unit = unit;
     struct packing body = without_auxiliary(&packing);
     const struct bond_facts bonds = bond_facts(&body);
     const struct bond_numbers weight =

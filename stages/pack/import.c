@@ -52,11 +52,12 @@ static void fit_bodies(struct packing *packing, double below, double above)
 
 // Grains from text or from another packing; INPUTS gets what the provenance says of it.
 static struct packing import(const char *path, const struct pack_parameters *parameters,
-                             json_t *inputs)
+                             double *unit, json_t *inputs)
 {
     bool has_box;
     struct packing packing =
-        read_grains(path, "packing", parameters->frame, &has_box, inputs);
+        read_grains(path, "packing", parameters->frame, &has_box, unit, inputs);
+    if (parameters->import_scale != 1) *unit = 0;
     for (int axis = 0; axis < 3 && !has_box; axis++)
         packing.periodic[axis] = parameters->domain.periodic[axis];
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
@@ -114,10 +115,10 @@ static struct domain replace_bodies(const struct pack_parameters *parameters,
 
 struct packing make_import(const struct invocation *invocation,
                            const struct pack_parameters *parameters, json_t *inputs,
-                           struct domain *domain)
+                           struct domain *domain, double *unit)
 {
     const char *path = invocation->n_input ? invocation->inputs[0] : "-";
-    struct packing packing = import(path, parameters, inputs);
+    struct packing packing = import(path, parameters, unit, inputs);
     *domain = is_plain(parameters) ? keep_bodies(parameters, &packing, path)
                                    : replace_bodies(parameters, &packing);
     packing.n_body = domain_bodies(domain, packing.body);

@@ -8,10 +8,10 @@
 
 // Reads the grains of INPUT (standard input where none is named), scaled to m by
 // import_scale, and what bounds them as *DOMAIN and in the packing; appends their
-// provenance to INPUTS. Grains keep their bonds if INPUT is a packing. Ends the program:
-// 65 for a domain that cannot be, for sides that cross and for grains that cannot be
-// read, 66 for no input.
-// The caller frees the packing.
+// provenance to INPUTS. UNIT: m that INPUT says its lengths are in, where they were
+// taken for metres; else 0. Grains keep their bonds if INPUT is a packing. Ends the
+// program: 65 for a domain that cannot be, for sides that cross and for grains that
+// cannot be read, 66 for no input. The caller frees the packing.
 struct packing make_import(const struct invocation *invocation,
                            const struct pack_parameters *parameters, json_t *inputs,
-                           struct domain *domain);
+                           struct domain *domain, double *unit);

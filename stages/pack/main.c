@@ -133,13 +133,14 @@ static const char *model_text(const struct reached *reached,
 // first. Notes, the mildest findings, are not told here.
 static void look_at(const struct packing *packing, const struct contacts *contacts,
                     const struct invocation *invocation,
-                    const struct pack_parameters *parameters)
+                    const struct pack_parameters *parameters, double unit)
 {
     // random points are meant to overlap
     if (parameters->check == CHECK_NONE || parameters->method == METHOD_POISSON) return;
     const char *path = invocation->n_input ? input_name(invocation->inputs[0]) : NULL;
-    const struct packing_facts facts =
+    struct packing_facts facts =
         packing_facts(packing, contacts, parameters->touching_gap);
+    facts.unit = unit;
     struct findings findings = {0};
     judge_packing(packing, &facts, &findings);
     for (int k = 0; k < findings.count; k++) {
@@ -307,9 +308,10 @@ int main(int argc, char **argv)
     json_t *inputs = json_array();
     struct domain domain;
     struct packing packing = {0};
+    double unit = 0;
     const char *given = given_input(&invocation, parameters.method);
     if (given && !(invocation.grains > 0))
-        packing = make_import(&invocation, &parameters, inputs, &domain);
+        packing = make_import(&invocation, &parameters, inputs, &domain, &unit);
     if (invocation.estimates) {
         estimate(&parameters,
                  invocation.grains > 0 ? invocation.grains : packing.n_particle);
@@ -331,7 +333,7 @@ int main(int argc, char **argv)
     packing.n_body = domain_bodies(&domain, packing.body);
     take_slab(&parameters, &domain, &packing);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
-    look_at(&packing, &contacts, &invocation, &parameters);
+    look_at(&packing, &contacts, &invocation, &parameters, unit);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);
     if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
     packing.n_body = domain_bodies(&domain, packing.body);

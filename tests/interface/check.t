@@ -357,4 +357,22 @@ with h5py.File(at("layered"), "r+") as file:
 _, report, _ = check(at("layered"))
 ok("row 41: has the same centre as row 40 (1 such pair)" in report["findings"][0]["text"],
    "rows are those of the input", report["findings"])
+# A dump that names its units has its lengths in those, whatever would be plausible.
+rows = "".join(f"{i + 1} {a:.9g} {b:.9g} {c:.9g} {d:.9g}\n" for i, ((a, b, c), d) in enumerate(zip(x / 1e-2, r / 1e-2)))
+sides = "".join(f"{a / 1e-2:.9g} {b / 1e-2:.9g}\n" for a, b in zip(low, high))
+frame = f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{n}\nITEM: BOX BOUNDS ff ff ff\n{sides}ITEM: ATOMS id x y z radius\n{rows}"
+told = {}
+for units in ("cgs", "micro", "si", "lj", ""):
+    with open(at("dump"), "w", encoding="utf-8") as file:
+        file.write((f"ITEM: UNITS\n{units}\n" if units else "") + frame)
+    report = check(at("dump"), *near)[1]
+    warned = call("pack", *sets("method=import"), at("dump"), "-o", at("from-dump"))[2]
+    told[units] = [re.findall("import.scale=([0-9.e-]+)", f["text"]) for f in report["findings"] if f["name"] == "units"] \
+        + re.findall("UNITS.*import.scale=([0-9.e-]+)", warned)
+ok(told == {"cgs": [["0.01"], "0.01"], "micro": [["1e-06"], "1e-06"], "si": [], "lj": [], "": []}, "units that a dump names are told", told)
+with open(at("dump"), "w", encoding="utf-8") as file:
+    file.write("ITEM: UNITS\ncgs\n" + frame)
+status, report, agree = check(at("dump"), *near, "-s", "import.scale=0.01")
+ok(agree and "units" not in names(report) and np.isclose(report["radius"]["median"], np.sort(r)[n // 2]), "and are right with their scale", report)
+
 done()

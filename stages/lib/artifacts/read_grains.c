@@ -64,12 +64,13 @@ static bool may_hold_grains(const struct bytes *beginning)
 // An empty standard input gets a line of its own: mostly an input was forgotten. The
 // bytes of an artifact become its image, those of text are freed here.
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
-                           bool *has_box, json_t *inputs)
+                           bool *has_box, double *unit, json_t *inputs)
 {
     struct bytes bytes = read_whole_of(path, may_hold_grains);
     if (!bytes.size && !strcmp(path, "-"))
         die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
                              "an input, make run from IMPORT=FILE");
+    if (unit) *unit = is_lammps(&bytes) ? lammps_unit(&bytes) : 0;
     if (has_box) *has_box = is_hdf5(&bytes) || is_lammps(&bytes);
     if (is_hdf5(&bytes)) return read_artifact(path, bytes, schema, inputs);
     const struct packing packing = read_lines(path, bytes, frame, inputs);

@@ -31,6 +31,10 @@ enum status copy_text(const struct bytes *text, char **copy, struct reason *reas
 // Whether this is a LAMMPS dump in text.
 bool is_lammps(const struct bytes *text);
 
+// Metres a unit of length, by the units that a dump names (dump_modify units yes); 0
+// where that is a metre, or it names none, or lj.
+double lammps_unit(const struct bytes *text);
+
 // One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
 // x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
 // Lengths are in the units of the dump. STATUS_BAD_DATA with the line in REASON. On

@@ -49,6 +49,21 @@ bool is_lammps(const struct bytes *text)
     return text->size >= 5 && !memcmp(text->data, "ITEM:", 5);
 }
 
+double lammps_unit(const struct bytes *text)
+{
+    static const struct {
+        const char *name;
+        double length;
+    } units[] = {{"cgs", 1e-2},    {"micro", 1e-6}, {"nano", 1e-9},
+                 {"metal", 1e-10}, {"real", 1e-10}, {"electron", 5.29177210903e-11}};
+    char head[32] = "", name[16];
+    memcpy(head, text->data, text->size < sizeof head ? text->size : sizeof head - 1);
+    if (sscanf(head, "ITEM: UNITS %15s", name) != 1) return 0;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (!strcmp(name, units[k].name)) return units[k].length;
+    return 0;
+}
+
 // The last line may have no end.
 static bool next_line(struct lines *lines)
 {

@@ -57,6 +57,13 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
 {
     static const char *const unit[] = {"milli", "micro", "nano"};
     int k = 1;
+    if (facts->unit > 0) {
+        add_finding(findings, FINDING_WRONG, "units",
+                    "by its ITEM: UNITS the dump has lengths in units of %g m, which "
+                    "were taken for metres: pack.import.scale=%g",
+                    facts->unit, facts->unit);
+        return;
+    }
     while (k < 3 && facts->median * pow(1e-3, k) > LARGEST_RADIUS)
         k++;
     char next[100] = "";

@@ -15,6 +15,7 @@ struct packing_facts {
     double smallest, largest;        // radius, m
     double tenth, median, ninetieth; // radii that 10, 50 and 90 % do not exceed, m
     struct vector lower, upper;      // where the grains' surfaces end, m
+    double unit; // m that the file says its lengths are in, taken for metres; 0: not so
     bool bounded;    // by bodies within the box, whose walls count as its own
     double porosity; // overlaps count twice as solid, as does what sticks out
     double empty;    // share of `box` far from every grain; 0 where there is a body
