@@ -404,9 +404,14 @@ void write_series(const struct artifact *artifact, const char *prefix, int n_fra
         response_series(artifact, &frames);
     else if (!strcmp(schema, "motion"))
         motion_series(artifact, &frames);
+    else if (!strcmp(schema, "shearstats") || !strcmp(schema, "restart"))
+        die(STATUS_BAD_DATA,
+            "%s: has nothing for ParaView (%s): --data prints its datasets, h5py "
+            "reads them",
+            input_name(artifact->path), schema);
     else
         die(STATUS_BAD_DATA,
-            "%s: nothing changes over time in a %s; ParaView opens it as it is",
-            input_name(artifact->path), schema);
+            "%s: nothing changes over time in a%s %s; ParaView opens it as it is",
+            input_name(artifact->path), strcmp(schema, "invasion") ? "" : "n", schema);
     end_frames(&frames);
 }

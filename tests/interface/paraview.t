@@ -4,6 +4,7 @@
 # `inspect --vtk` writes what changes over time.
 import glob
 import os
+import subprocess
 import sys
 import xml.etree.ElementTree as xml
 
@@ -14,7 +15,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 sys.path.insert(0, "tests")
-from tap import SCENE, done, ok, run, scratch_paths
+from tap import BIN, SCENE, done, ok, run, scratch_paths
 
 def grid_of(reader, path):
     reader.SetFileName(path)
@@ -130,4 +131,19 @@ with scratch_paths() as at:
        "rings: their volumes are those of the drying's history", (sums, wanted))
     drawn = vtk_to_numpy(grids[0].GetCells().GetConnectivityArray()).reshape(-1, 2)
     ok({tuple(pair) for pair in drawn} == pairs, "rings: lines between the grains of each ring")
+
+    # Of each artifact without a series `inspect` says whether it opens as it is.
+    run("pack", "-q", "--set", "counts=[3,3,3]", "--set", "radius=1e-3", "-o", at("small.hdf"))
+    run("simulate", "-q", *(word for key in ("duration=1e-4", 'materials={"glass":{"density":2500,"young_modulus":1e6,"friction":0.5,"restitution":0.5}}',
+                                             "record.every=5e-5") for word in ("--set", key)), at("small.hdf"), "-o", at("motion.hdf"))
+    run("shearstats", "-q", at("motion.hdf"), "-o", at("shearstats.hdf"))
+    run("invade", "-q", at("network.hdf"), "-o", at("invasion.hdf"))
+    run("flow", "-q", at("packing.hdf"), "-o", at("flow.hdf"))
+    told = {}
+    for name in "packing", "network", "invasion", "flow", "shearstats":
+        said = subprocess.run([f"{BIN}/inspect", f"--vtk={at('none')}", at(name + ".hdf")], capture_output=True, text=True)
+        told[name] = (said.returncode, "ParaView opens it as it is" in said.stderr) == (65, bool(vtkHDFReader().CanReadFile(at(name + ".hdf")))), said.stderr
+    ok(all(right for right, _ in told.values()) and not vtkHDFReader().CanReadFile(at("shearstats.hdf")),
+       "what has no series opens as it is where inspect says so", told)
+
 done()
