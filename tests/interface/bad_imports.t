@@ -28,7 +28,7 @@ imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
 for heading in "x,y,z,d", "x,y,z,x,r", "x_um,y_um,z_um,r_um":
     imported(f"names of columns that are not those of grains: {heading}", f"{heading}\n0,0,0,1,1\n",
              "line 1: must be four numbers, x y z r, or a comment, #; names of columns must have x, y, z and r "
-             r"\(or radius\) among them, each once")
+             r"\(or radius\) among them, each once \(diameters: r, with import.diameters=true\)")
 imported("an empty field in a named column is refused", "x,y,z,r\n0,0,,1\n",
          "line 2: must have a number in column z$")
 imported("a line shorter than its heading is refused", "label x y z r\n1 0 0 0\n",
