@@ -25,4 +25,4 @@ def word(one; many): if . == 1 then "1 \(one)" else "\(.) \(many)" end;
         + (if $runs > 1 then " a run" else "" end) + ", under which "
         + ($u.cracks | few | word("bond"; "bonds")) + " broke"
         + (if $u.cracks == 0 then ""
-           else ": do as many break with twice the dem-replay.cycles and most_cycles?" end) end)
+           else ": do as many break with twice the dem-replay.cycles and most_cycles (of equilibria: with engine=explicit)?" end) end)

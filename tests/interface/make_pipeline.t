@@ -492,7 +492,7 @@ cracks() { echo "{\"total\": $1, \"normal\": $2, \"shear\": $3}"; }
 is 'one run' 'one run: 75 of 625 bonds broke, 24 in tension, 51 in shear; every load came to rest' \
     "$(told "{\"runs\": 1, \"bonds\": 625, \"cracks\": $(cracks 75 24 51), \"confidence_interval\": null,
         \"mean\": {\"cracks\": $(cracks 75 24 51), \"unsettled\": {\"loads\": 0, \"cracks\": 0}}}")"
-again='do as many break with twice the dem-replay.cycles and most_cycles?'
+again='do as many break with twice the dem-replay.cycles and most_cycles (of equilibria: with engine=explicit)?'
 is 'one that did not settle: what to do' \
     'one run: 5 of 9 bonds broke, 2 in tension, 3 in shear; grains still moved at the end of 1 load, under which 2 bonds broke: '"$again" \
     "$(told "{\"runs\": 1, \"bonds\": 9, \"cracks\": $(cracks 5 2 3), \"confidence_interval\": null,
