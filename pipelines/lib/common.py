@@ -98,7 +98,7 @@ def rounded(x, digits=0):
 
 def with_unit(x, unit):
     """5e-7 m -> 500 nm"""
-    k = 0
+    k = 0 if x else 6
     while k < 8 and x >= 0.9995 * 10.0 ** (3 * k - 15):
         k += 1
     return f"{x / 10.0 ** (3 * k - 18):.3g} {['a', 'f', 'p', 'n', 'µ', 'm', '', 'k', 'M'][k]}{unit}"

@@ -17,6 +17,11 @@ from PIL import Image
 
 sys.path.insert(0, "tests")
 from tap import SCENE, done, ok, read, run, scratch
+sys.path.insert(0, "pipelines/lib")
+from common import with_unit
+
+said = [with_unit(x, "s") for x in (0, 5e-7, 2.5, 1420)]
+ok(said == ["0 s", "500 ns", "2.5 s", "1.42 ks"], "labels have units of a fitting size", said)
 
 SMALL = {"pack": ["counts=[3,3,5]"], "force-protocol": ["steps=40"],
          "dem-replay": ["engine=explicit", "cycles=60", "tolerance=null", "bond.normal_strength=9e3",
