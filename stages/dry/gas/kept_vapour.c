@@ -32,30 +32,8 @@ static void enter_gas(struct kept_vapour *kept, int site)
         if (links->value[k] > 0) links->diagonal[site] += links->value[k];
 }
 
-// Breadth first, so that products with rows in this order read memory nearly in order.
-// ORDER (n) is 0.
-static void find_order(const struct conductance_matrix *links, int *order)
-{
-    const int n = links->n;
-    bool *is_found = NEW_ARRAY(bool, n + 1);
-    is_found[n] = true; // the air
-    int found = 0, done = 0;
-    for (int first = 0; first < n; first++) {
-        if (!is_found[first]) order[found++] = first;
-        is_found[first] = true;
-        for (; done < found; done++)
-            for (int k = links->offset[order[done]]; k < links->offset[order[done] + 1];
-                 k++) {
-                const int other = links->column[k];
-                if (!is_found[other]) order[found++] = other;
-                is_found[other] = true;
-            }
-    }
-    free(is_found);
-}
-
 struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_open,
-                                       const struct link *link, double step)
+                                       const struct link *link, int *order, double step)
 {
     struct kept_vapour *kept = NEW_ARRAY(struct kept_vapour, 1);
     *kept = (struct kept_vapour){
@@ -67,7 +45,7 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
         .reaches_wet = 1,
         .row_site = NEW_ARRAY(int, n_site),
         .row = NEW_ARRAY(int, n_site),
-        .order = NEW_ARRAY(int, n_site),
+        .order = order,
         .dried = NEW_ARRAY(int, n_site),
         .gain_site = NEW_ARRAY(int, n_site),
         .gain = NEW_ARRAY(double, n_site),
@@ -76,7 +54,6 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
     struct conductance_matrix *links = &kept->links;
     for (int k = 0; k < links->offset[n_site]; k++)
         links->value[k] *= -1;
-    find_order(links, kept->order);
     for (int l = 0; l < n_open; l++)
         kept_vapour_open(kept, link[l].site[0], link[l].site[1], link[l].conductance);
     all_out_of_gas(kept);

@@ -33,7 +33,7 @@ struct kept_vapour {
     int n_row;           // sites in the gas: sorted, then in the order in which they
                          // came into it
     int *row_site, *row; // (n_row), and (n) the place of each; -1: none
-    int *order;          // (n) all sites, those that are linked side by side
+    int *order;          // (n) all sites, near ones after each other
 
     int n_dried;
     int *dried; // (n_dried) sites that have dried since the last _follow
@@ -59,10 +59,12 @@ static inline bool is_in_gas(const struct kept_vapour *kept, int site)
 
 // Sites up to N_WET hold liquid, those from there to N_SITE are in the gas. The first
 // N_OPEN of N_LINK links are open, the others lead through throats with liquid; site
-// N_SITE is the air. STEP > 0. Finds the potentials. The caller frees it with
-// kept_vapour_free.
+// N_SITE is the air. Takes over ORDER (n_site): near sites after each other, so that
+// memory is read nearly in order. STEP > 0. Finds the potentials. The caller frees it
+// with kept_vapour_free.
 struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_open,
-                                       const struct link *link, double step);
+                                       const struct link *link, int *order,
+                                       double step);
 void kept_vapour_free(struct kept_vapour *kept);
 
 // A throat of CONDUCTANCE between A and B has emptied. SITE has dried, and counts as

@@ -11,6 +11,7 @@
 #include "vapour.h"
 
 #include "basics/memory.h"
+#include "geometry/space_filling_curve.h"
 #include "nested_dissection_order.h"
 
 #include <math.h>
@@ -108,6 +109,17 @@ static void add_boundary_layer(struct kron_fronts *mesh, const struct network *n
         add_by_levels(mesh, layer, n_node);
 }
 
+// Nodes along a curve, then the lattice level by level.
+static int *order_of_sites(const struct vapour *vapour, const struct network *network)
+{
+    int32_t *curve = order_along_curve(network->n_node, network->node_position);
+    int *order = NEW_ARRAY(int, vapour->n_site);
+    for (int i = 0; i < vapour->n_site; i++)
+        order[i] = i < network->n_node ? curve[i] : i;
+    free(curve);
+    return order;
+}
+
 // The same lattice and the throats, for potentials that are kept.
 static struct kept_vapour *keep_vapour(const struct vapour *vapour,
                                        const struct network *network,
@@ -130,8 +142,8 @@ static struct kept_vapour *keep_vapour(const struct vapour *vapour,
             link[n++] = (struct link){
                 {network->throat_nodes[t][0], network->throat_nodes[t][1]},
                 vapour->conductance[t]};
-    struct kept_vapour *kept =
-        kept_vapour_create(n_node, vapour->n_site, n, n_open, link, step);
+    struct kept_vapour *kept = kept_vapour_create(
+        n_node, vapour->n_site, n, n_open, link, order_of_sites(vapour, network), step);
     free(link);
     return kept;
 }
