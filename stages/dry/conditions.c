@@ -188,11 +188,10 @@ static enum status check_course(const struct drying_conditions *conditions,
                       "vapour_step: must be from 0 to 0.5, is %g",
                       conditions->vapour_step);
     if (conditions->vapour_step > 0 &&
-        (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS ||
-         conditions->rings == RINGS_FILMS))
+        (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS))
         return refuse(reason, STATUS_BAD_DATA,
-                      "vapour_step: must be 0 where liquid is viscous, menisci are "
-                      "curved (kelvin) or rings=films, is %g",
+                      "vapour_step: must be 0 where liquid is viscous or menisci are "
+                      "curved (kelvin), is %g",
                       conditions->vapour_step);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,

@@ -158,8 +158,8 @@ const struct parameter dry_table[] = {
          "largest sum of the errors of evaporation, over the rate, until the vapour "
          "is found again in all of the gas (until then it changes only near nodes "
          "that dry); 0: found at each event; null: 0 up to 6000 nodes on the open "
-         "walls, 0.2 above, but 0 with kelvin, viscous liquid, rings=films or a "
-         "vapour_tolerance"},
+         "walls, 0.2 above, 0.1 with rings=films, but 0 with kelvin, viscous liquid or "
+         "a vapour_tolerance"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),
      .text = "fall of the saturation from one recorded step to the next; 0: every "
@@ -250,9 +250,9 @@ double vapour_step(const struct dry_parameters *parameters, double open_nodes)
     const struct drying_conditions *conditions = &parameters->conditions;
     if (!isnan(conditions->vapour_step)) return conditions->vapour_step;
     const bool at_each = conditions->kelvin || parameters->liquid == LIQUID_VISCOUS ||
-                         parameters->rings == RINGS_FILMS ||
                          conditions->vapour_tolerance > 0;
-    return at_each ? 0 : default_vapour_step(open_nodes);
+    const double step = at_each ? 0 : default_vapour_step(open_nodes);
+    return parameters->rings == RINGS_FILMS ? step / 2 : step;
 }
 
 static int count_open_nodes(const struct network *network, unsigned open_walls)

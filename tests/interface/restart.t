@@ -274,6 +274,7 @@ with scratch() as folder:
     beads = make_irregular(folder, "beads", 1500, "[11e-6,11e-6,11e-6]", "soft_spheres")
     for rings, liquid in ("isolated", "inviscid"), ("isolated", "immobile"), ("joined", "inviscid"), ("films", "inviscid"):
         in_pieces(f"dry, {rings} rings, {liquid} liquid", [*dry, "--set", f"rings={rings}", "--set", f"liquid={liquid}", beads])
+    in_pieces("dry, films and vapour that is kept", [*dry, "--set", "rings=films", "--set", "vapour_step=0.1", beads])
 
     without_a_place("dry", [*dry, "--set", "liquid=viscous", small])
 

@@ -54,8 +54,8 @@ struct cost cost_of_merging(const struct body_size *body);
 // without a tolerance.
 struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact);
 
-// dry.vapour_step by default with so many nodes on the open walls. From some 4000 on
-// dryings are faster with it; below 6000 they stay exact.
+// dry.vapour_step by default with so many nodes on the open walls, without films. From
+// some 4000 on dryings are faster with it; below 6000 they stay exact.
 double default_vapour_step(double open_nodes);
 
 // The same with vapour that is kept until errors may add up to STEP of the rate.

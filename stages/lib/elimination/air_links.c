@@ -97,21 +97,27 @@ void air_links_clear(struct air_links *air)
     air->summed = 0;
 }
 
-// Numbers are written by site, so a checkpoint keeps no places. A negative number or
-// NaN gets a place too: whoever checks the restored state then refuses it.
+// Numbers are written by site, so a checkpoint keeps no places. A site may have a place
+// and evaporate nothing.
 void air_links_state(struct air_links *air, struct checkpoint_stream *stream)
 {
-    double *conductance = NEW_ARRAY(double, air->n_site);
-    for (int i = 0; i < air->n_site; i++)
+    const int n = air->n_site;
+    double *conductance = NEW_ARRAY(double, n);
+    bool *has_place = NEW_ARRAY(bool, n);
+    for (int i = 0; i < n; i++) {
         conductance[i] = air_links_of(air, i);
-    stream_numbers(stream, conductance, air->n_site);
-    for (int i = 0; stream->restoring && i < air->n_site; i++) {
+        has_place[i] = air->place[i] >= 0;
+    }
+    stream_numbers(stream, conductance, n);
+    stream_flags(stream, has_place, n);
+    for (int i = 0; stream->restoring && i < n; i++) {
         air_links_take(air, i);
-        if (conductance[i] == 0) continue;
+        if (!has_place[i]) continue;
         const int place = new_place(air, i); // may move air->conductance
         air->conductance[place] = conductance[i];
     }
     free(conductance);
+    free(has_place);
     stream_sums(stream, &air->all, 1);
     stream_numbers(stream, &air->summed, 1);
 }
