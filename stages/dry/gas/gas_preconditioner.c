@@ -12,7 +12,7 @@
 
 // It is positive definite while no eigenvalue of F^-1 A exceeds 2 / WEIGHT; the largest
 // are near 2. Smaller weights than 1 take fewer iterations, 0.3 the fewest (10,000
-// grains: 12.7 on average, with a weight of 1 17, with the diagonal of new rows 22).
+// grains: 12.7 on average, with a weight of 1 17, with the diagonal of new rows 20).
 static const double WEIGHT = 0.3;
 
 // Rows from the first new one on, then old ones linked to them.
