@@ -15,6 +15,10 @@
 // Of what a wet site evaporates on average, so much may stay on its way at one site.
 static const double MUCH = 0.1;
 
+// What a node that dries lets pass on, at most. Where conductances differ by many
+// orders of magnitude it would go to and fro between two sites for ever.
+enum { MOST_PASSED_ON = 20000 };
+
 static void all_out_of_gas(struct kept_vapour *kept)
 {
     for (int i = 0; i < kept->links.n; i++)
@@ -162,8 +166,10 @@ static void let_dry(struct kept_vapour *kept, int site)
     const struct air_links *air = &kept->air;
     const double much = MUCH * compensated_value(air->all) / (air->n - air->n_unused);
     enqueue(kept, site);
-    while (kept->n_queue > 0)
-        pass_on(kept, dequeue(kept), much);
+    for (int passed_on = 0; kept->n_queue > 0; passed_on++) {
+        const int next = dequeue(kept);
+        if (passed_on < MOST_PASSED_ON) pass_on(kept, next, much);
+    }
 }
 
 bool kept_vapour_follow(struct kept_vapour *kept)
