@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All potentials of the gas, by conjugate gradients from those of before:
-//     sum_j conductance_ij (x_i - x_j) = residual_i,  phi_i = max(0, phi_i + x_i),
+//     sum_j conductance_ij (x_i - x_j) = residual_i,  phi_i += max(-phi_i / 2, x_i),
 // until what is on its way is a small part of what may be. The approximate factor of
 // the preconditioner knows the sites that were in the gas when it was made. It is kept
 // while it serves.
@@ -99,7 +99,9 @@ void kept_vapour_find_flows(struct kept_vapour *kept)
     }
 }
 
-// Reduces the residuals to REDUCTION of their size, or as far as this goes.
+// Reduces the residuals to REDUCTION of their size, or as far as this goes. A level
+// above 0 stays so: wet sites beside it would evaporate 0 and lose their shares
+// (evaporation_shares.h), and get none when they evaporate again.
 static int correct(struct kept_vapour *kept, struct gas_preconditioner *gas,
                    double reduction)
 {
@@ -117,7 +119,7 @@ static int correct(struct kept_vapour *kept, struct gas_preconditioner *gas,
         conjugate_gradients(&linear, b, x, reduction, MOST_ITERATIONS);
     for (int r = 0; r < n; r++) {
         double *level = &kept->level[kept->row_site[r]];
-        *level = fmax(0, *level + x[r] * size);
+        *level += fmax(-0.5 * *level, x[r] * size);
     }
     for (int k = 0; k < 3; k++)
         free(linear.work[k]);

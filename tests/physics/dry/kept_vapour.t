@@ -51,6 +51,14 @@ with scratch_paths() as at:
         for step in 0.2, 0.01:
             rate = dried(*start, f"vapour_step={step}")["rate"][0]
             ok(abs(rate / first - 1) < step, f"the rate at {saturation} is within {step}", rate / first - 1)
+    for deviation in "3e-6", "1e-5":  # radii over eight and ten decades
+        wide = ["throat_radius.distribution=lognormal", f"throat_radius.standard_deviation={deviation}"]
+        exact = dried(*wide)
+        for step in 0.2, 0.5:
+            drying = dried(*wide, f"vapour_step={step}")
+            ok(drying["throats"] == exact["throats"] and drying["books"] < 1e-11 and drying["balance"] < 1e-9,
+               f"radii that deviate by {deviation} m, a step of {step}: all empties, nothing is lost",
+               (len(drying["throats"]), drying["books"], drying["balance"]))
     for other in "kelvin=true", "liquid=viscous":
         refused(f"vapour_step with {other}", "vapour_step: must be 0", "dry", "-q",
                 *sets("vapour_step=0.1", other), at("network"))
