@@ -44,7 +44,7 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
         .step = step,
         .air = air_links_init(n_site),
         .links = conductance_matrix_of_links(n_site, n_site + 1, n_link, link),
-        .level = NEW_ARRAY(double, n_site),
+        .level = NEW_ARRAY(struct compensated, n_site),
         .residual = NEW_ARRAY(double, n_site),
         .reaches_wet = 1,
         .row_site = NEW_ARRAY(int, n_site),
@@ -139,7 +139,7 @@ static void pass_on(struct kept_vapour *kept, int site, double much)
 {
     const struct conductance_matrix *links = &kept->links;
     const double up = kept->residual[site] / links->diagonal[site];
-    kept->level[site] += up;
+    compensated_add(&kept->level[site], up);
     kept->residual[site] = 0;
     for (int k = links->offset[site]; k < links->offset[site + 1]; k++) {
         const double flow = links->value[k] * up;
@@ -223,7 +223,7 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
         approximate_cholesky_free(kept->factor);
         kept->factor = NULL;
     }
-    stream_numbers(stream, kept->level, n);
+    stream_sums(stream, kept->level, n);
     stream_numbers(stream, kept->residual, n);
     stream_numbers(stream, &kept->on_its_way, 1);
     stream_numbers(stream, &kept->below_zero, 1);
@@ -236,8 +236,8 @@ bool kept_vapour_fits(const struct kept_vapour *kept)
     int n_gas = 0;
     for (int i = 0; i < kept->links.n; i++) {
         n_gas += is_in_gas(kept, i);
-        if (!(air_links_of(&kept->air, i) >= 0) || !(kept->level[i] >= 0) ||
-            !isfinite(kept->residual[i]))
+        if (!(air_links_of(&kept->air, i) >= 0) ||
+            !(compensated_value(kept->level[i]) >= 0) || !isfinite(kept->residual[i]))
             return false;
     }
     return n_gas == kept->n_row && kept->on_its_way >= -kept->below_zero &&

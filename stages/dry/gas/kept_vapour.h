@@ -24,10 +24,10 @@ struct kept_vapour {
     // Links of all sites, those of throats with liquid below 0; the air is site n. The
     // diagonal is that of sites in the gas.
     struct conductance_matrix links;
-    double *level;       // (n) phi, 0 outside the gas
-    double *residual;    // (n) 0 outside the gas
-    double on_its_way;   // sum of residuals
-    double below_zero;   // of those below 0: rounding and what a solution leaves
+    struct compensated *level; // (n) phi, 0 outside the gas
+    double *residual;          // (n) 0 outside the gas
+    double on_its_way;         // sum of residuals
+    double below_zero;         // of those below 0: rounding and what a solution leaves
     double reaches_wet;  // share of what was on its way that came to wet sites, at the
                          // last solution
     int n_row;           // sites in the gas: sorted, then in the order in which they

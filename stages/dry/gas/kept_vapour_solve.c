@@ -3,7 +3,8 @@
 //     sum_j conductance_ij (x_i - x_j) = residual_i,  phi_i += max(-phi_i / 2, x_i),
 // until what is on its way is a small part of what may be. The approximate factor of
 // the preconditioner knows the sites that were in the gas when it was made. It is kept
-// while it serves.
+// while it serves. Levels are compensated numbers: beside a narrow place on the way
+// they are nearly alike, and a residual keeps its digits.
 #include "kept_vapour.h"
 
 #include "gas_preconditioner.h"
@@ -73,9 +74,9 @@ static void precondition(void *context, const double *residual, double *z)
     gas_preconditioner_apply(context, residual, z);
 }
 
-static double level_of(const struct kept_vapour *kept, int site)
+static struct compensated level_of(const struct kept_vapour *kept, int site)
 {
-    return site < kept->links.n ? kept->level[site] : 1;
+    return site < kept->links.n ? kept->level[site] : (struct compensated){1, 0};
 }
 
 void kept_vapour_find_flows(struct kept_vapour *kept)
@@ -88,7 +89,8 @@ void kept_vapour_find_flows(struct kept_vapour *kept)
         for (int k = links->offset[i]; k < links->offset[i + 1]; k++)
             if (links->value[k] > 0)
                 flow += links->value[k] *
-                        (level_of(kept, links->column[k]) - kept->level[i]);
+                        compensated_difference(level_of(kept, links->column[k]),
+                                               kept->level[i]);
         if (!is_in_gas(kept, i)) {
             if (flow > 0) air_links_link(&kept->air, i, flow);
             continue;
@@ -118,8 +120,8 @@ static int correct(struct kept_vapour *kept, struct gas_preconditioner *gas,
     const int iterations =
         conjugate_gradients(&linear, b, x, reduction, MOST_ITERATIONS);
     for (int r = 0; r < n; r++) {
-        double *level = &kept->level[kept->row_site[r]];
-        *level += fmax(-0.5 * *level, x[r] * size);
+        struct compensated *level = &kept->level[kept->row_site[r]];
+        compensated_add(level, fmax(-0.5 * compensated_value(*level), x[r] * size));
     }
     for (int k = 0; k < 3; k++)
         free(linear.work[k]);
