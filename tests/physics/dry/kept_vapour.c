@@ -20,6 +20,14 @@ enum {
 };
 enum { MAX_LINKS = 2 * SITES + WIDTH };
 
+static int *sites_in_order(void)
+{
+    int *order = NEW_ARRAY(int, SITES);
+    for (int i = 0; i < SITES; i++)
+        order[i] = i;
+    return order;
+}
+
 static double uniform(uint64_t *state)
 {
     *state = *state * 6364136223846793005u + 1442695040888963407u;
@@ -132,8 +140,8 @@ static void compare(const struct body *body, const struct kept_vapour *kept)
 
 static void dry_body(struct body body, double step)
 {
-    struct kept_vapour *kept =
-        kept_vapour_create(NODES, SITES, body.n_link, body.n_open, body.link, step);
+    struct kept_vapour *kept = kept_vapour_create(
+        NODES, SITES, body.n_link, body.n_open, body.link, sites_in_order(), step);
     for (int l = body.n_open; l + 1 < body.n_link; l++) {
         open_link(&body, kept, l);
         kept_vapour_follow(kept);
