@@ -101,6 +101,20 @@ void kept_vapour_find_flows(struct kept_vapour *kept)
     }
 }
 
+// Whether a way leads from the gas to a wet site.
+static bool leads_to_wet(const struct kept_vapour *kept)
+{
+    const struct conductance_matrix *links = &kept->links;
+    for (int r = 0; r < kept->n_row; r++) {
+        const int site = kept->row_site[r];
+        for (int k = links->offset[site]; k < links->offset[site + 1]; k++)
+            if (links->value[k] > 0 && links->column[k] < links->n &&
+                !is_in_gas(kept, links->column[k]))
+                return true;
+    }
+    return false;
+}
+
 // Reduces the residuals to REDUCTION of their size, or as far as this goes. A level
 // above 0 stays so: wet sites beside it would evaporate 0 and lose their shares
 // (evaporation_shares.h), and get none when they evaporate again.
@@ -165,7 +179,7 @@ void kept_vapour_solve(struct kept_vapour *kept)
         const double evaporation = compensated_value(kept->air.all);
         const double enough = ENOUGH * kept->step * evaporation;
         if (!(error > enough)) break;
-        if (corrections > 0 && evaporation == 0) break; // no way leads to wet sites
+        if (evaporation == 0 && corrections > 0 && !leads_to_wet(kept)) break;
         iterations += correct(kept, &gas, fmax(1e-3, fmin(0.5, 0.5 * enough / error)));
         kept_vapour_find_flows(kept);
     }

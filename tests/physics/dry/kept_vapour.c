@@ -185,6 +185,14 @@ static struct body make_column(double decades, double layer, uint64_t seed)
     return body;
 }
 
+TEST(columns_dry_and_gas_behind_wet_nodes_too)
+{
+    for (uint64_t seed = 1; seed <= 60; seed++) {
+        dry_body(make_column(10, 1, seed), 0.2);
+        dry_body(make_column(12, 1e6, seed), 0.2);
+    }
+}
+
 TEST(a_column_dries_under_a_layer_that_conducts_far_better)
 {
     for (uint64_t seed = 1; seed <= 20; seed++) {
