@@ -18,6 +18,10 @@
 // part still has all the digits of a double.
 static const double MIN_PART = 1e-10;
 
+// The same where gains (share_gain) are added to sums: a share that is subtracted is
+// rounded otherwise than the gains that it consists of.
+static const double MIN_PART_WITH_GAINS = 1e-3;
+
 void mark_dirty(struct emptying_times *times, int timer)
 {
     if (times->is_dirty[timer]) return;
@@ -178,10 +182,11 @@ void evaporation_shares_set_rate(struct emptying_times *times, int timer)
 
 bool evaporation_shares_lack_digits(const struct emptying_times *times)
 {
+    const double least = times->occupancy->vapour.kept ? MIN_PART_WITH_GAINS : MIN_PART;
     for (int l = 0; l < times->n_dirty; l++) {
         const int k = times->dirty[l];
         if (times->has_sum[k] &&
-            compensated_value(times->sum[k]) < MIN_PART * times->summed[k])
+            compensated_value(times->sum[k]) < least * times->summed[k])
             return true;
     }
     return false;

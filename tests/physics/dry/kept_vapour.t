@@ -63,6 +63,13 @@ with scratch_paths() as at:
         refused(f"vapour_step with {other}", "vapour_step: must be 0", "dry", "-q",
                 *sets("vapour_step=0.1", other), at("network"))
 
+    run("pack", "-q", *sets("counts=[8,8,5]"), "-o", at("packing"))
+    run("tessellate", "-q", at("packing"), "-o", at("tessellation"))
+    run("merge-nodes", "-q", at("tessellation"), "-o", at("network"))
+    drying = dried("vapour_step=0.2", "boundary_layer.thickness=1e-12", "boundary_layer.exchange=lumped")
+    ok(drying["books"] < 1e-11 and drying["balance"] < 1e-12,
+       "nor under air that takes a million times what comes from below", (drying["books"], drying["balance"]))
+
     make_network(150)
     compare("rings=films", "films.step=0")
 
