@@ -106,7 +106,7 @@ const char *describe_switches(const struct drying_conditions *conditions, char *
                 : "Kelvin effect: each cluster has the vapour pressure of its widest "
                   "meniscus; vapour may condense there in a throat partly empty, "
                   "full ones become flatter\n");
-    if (conditions->vapour_tolerance > 0) {
+    if (conditions->vapour_tolerance > 0 && !(conditions->vapour_step > 0)) {
         char line[160];
         snprintf(
             line, sizeof line,
