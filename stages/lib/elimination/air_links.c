@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 struct air_links air_links_init(int n_site)
 {
@@ -92,7 +91,8 @@ void air_links_lower(struct air_links *air, double drop)
 
 void air_links_clear(struct air_links *air)
 {
-    memset(air->conductance, 0, (size_t)air->n * sizeof *air->conductance);
+    for (int place = 0; place < air->n; place++)
+        air->conductance[place] = 0;
     air->all = (struct compensated){0};
     air->summed = 0;
 }
