@@ -110,10 +110,8 @@ json_t *expected_cost(int n)
     json_t *list = json_array();
     add_cost(list, "tessellate", cost_of_tessellation(n));
     add_cost(list, "merge-nodes", cost_of_merging(&body));
-    const double step = default_vapour_step(body.face);
     add_cost(list, "dry",
-             step > 0 ? cost_of_kept_drying(&body, step)
-                      : cost_of_drying(&body, false, true));
+             cost_of_drying(&body, false, true, default_vapour_step(body.face)));
     add_cost(list, "force-protocol (100 loads)", cost_of_forces(&body));
     add_cost(list, "dem-replay (100 loads of 100 cycles)",
              cost_of_cycles(&body, 0, 100, 100));

@@ -228,10 +228,9 @@ static int estimate(struct invocation *invocation,
     const struct drying_conditions *conditions = &parameters->conditions;
     struct body_size body = input_size(invocation, parameters->open_walls);
     body.changes = recorded_changes(&body, conditions->step_interval);
-    const double step = vapour_step(parameters, body.face);
-    struct cost cost = step > 0 ? cost_of_kept_drying(&body, step)
-                                : cost_of_drying(&body, conditions->kelvin,
-                                                 !(conditions->vapour_tolerance > 0));
+    struct cost cost =
+        cost_of_drying(&body, conditions->kelvin, !(conditions->vapour_tolerance > 0),
+                       vapour_step(parameters, body.face));
     if (parameters->liquid == LIQUID_VISCOUS)
         cost = with_viscous_flow(cost, &body, flow_step(parameters, body.throats) > 0);
     cost =

@@ -123,27 +123,20 @@ double default_vapour_step(double open_nodes)
     return open_nodes > MOST_OPEN_NODES_BY_EVENTS ? KEPT_STEP : 0;
 }
 
-// Solutions of the vapour are as many as nodes over those that dry in between, STEP of
-// the open face.
-struct cost cost_of_kept_drying(const struct body_size *body, double step)
+// Links of a front grow with its square. Kept vapour is found again as often as nodes
+// dry over those that dry in between, STEP of the open face.
+struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact,
+                           double step)
 {
-    const double throats = body->throats;
-    const double solutions = throats / (body->face * step);
-    return writes(cost_of(throats * (2e-6 + 2.5e-9 * body->face + 5.2e-8 * solutions) +
-                              1.2e-7 * body->changes,
-                          5.5e-4 * throats + 14 * body->changes / MEBIBYTE),
-                  THROAT_BYTES * throats + 12 * body->changes);
-}
-
-struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact)
-{
-    const double throats = body->throats, front = 2 * body->face;
-    const double links = front * front * (exact ? 5e-12 : 2.5e-12);
-    double seconds = throats * (2e-6 + 9e-9 * front + links) + 1.2e-7 * body->changes;
+    const double throats = body->throats, face = body->face, front = 2 * face;
+    const double links = step > 0 ? 0 : front * front;
+    const double each = step > 0
+                            ? 2e-6 + 2.5e-9 * face + 5.2e-8 * throats / (face * step)
+                            : 2e-6 + 9e-9 * front + links * (exact ? 5e-12 : 2.5e-12);
+    double seconds = throats * each + 1.2e-7 * body->changes;
     if (kelvin) seconds += 2.4e-10 * pow(throats, 2.65);
     const double mebibytes =
-        5.5e-4 * throats +
-        (14 * body->changes + front * front * (exact ? 4 : 2)) / MEBIBYTE;
+        5.5e-4 * throats + (14 * body->changes + links * (exact ? 4 : 2)) / MEBIBYTE;
     return writes(kelvin ? within(seconds, 5, 100, mebibytes)
                          : cost_of(seconds, mebibytes),
                   THROAT_BYTES * throats + 12 * body->changes);

@@ -51,15 +51,14 @@ struct cost cost_of_tessellation(double grains);
 struct cost cost_of_merging(const struct body_size *body);
 
 // With the rows of BODY recorded. KELVIN: menisci lower the vapour pressure. EXACT:
-// without a tolerance.
-struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact);
+// without a tolerance. STEP above 0: vapour that is kept until errors may add up to
+// this share of the rate.
+struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact,
+                           double step);
 
 // dry.vapour_step by default with so many nodes on the open walls, without films. From
 // some 4000 on dryings are faster with it; below 6000 they stay exact.
 double default_vapour_step(double open_nodes);
-
-// The same with vapour that is kept until errors may add up to STEP of the rate.
-struct cost cost_of_kept_drying(const struct body_size *body, double step);
 
 // What the flow of viscous liquid adds, found at each event, or KEPT for a while.
 struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
