@@ -243,6 +243,7 @@ static void make_layer(struct domain *domain, int wall, struct packing *packing)
     if (status) die(status, "%s", reason.text);
     domain->lower = packing->lower;
     domain->upper = packing->upper;
+    packing->n_body = domain_bodies(domain, packing->body);
 }
 
 // Whether METHOD keeps checkpoints; the others run in one go.
@@ -336,7 +337,6 @@ int main(int argc, char **argv)
     look_at(&packing, &contacts, &invocation, &parameters, unit);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);
     if (parameters.extra_layer) make_layer(&domain, parameters.extra_side, &packing);
-    packing.n_body = domain_bodies(&domain, packing.body);
     write_packing(&packing, &domain, &contacts, &invocation, inputs, &parameters,
                   &reached);
 
