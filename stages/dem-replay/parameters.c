@@ -108,7 +108,7 @@ const struct parameter replay_table[] = {
              "only further approach does"},
     {"shrinkage.strain", PARAMETER_NUMBER, "1", "0", AT(settings.shrinkage.strain),
      BETWEEN(0, 0.5),
-     .text = "explicit: drying shrinkage, the linear strain by which dry grains and "
+     .text = "drying shrinkage, the linear strain by which dry grains and "
              "their bonds are smaller without stress; never swells back; 0: none"},
     {"shrinkage.law", PARAMETER_CHOICE, "1", "\"uniform\"", AT(shrinkage_law),
      .choices = "uniform|front|liquid",

@@ -12,6 +12,7 @@
 #include "quasi_static/quasi_static.h"
 #include "support_reaction.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,10 +35,12 @@ static enum status check(const struct replay_settings *settings, struct reason *
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.bridges.volume: equilibria have no liquid bridges: "
                       "use engine=explicit");
-    if (settings->shrinkage.strain > 0)
-        return refuse(reason, STATUS_BAD_DATA,
-                      "dem-replay.shrinkage.strain: equilibria do not shrink: use "
-                      "engine=explicit");
+    if (settings->shrinkage.strain > 0 && (settings->begin || settings->keep_state))
+        return refuse(
+            reason, STATUS_BAD_DATA,
+            "dem-replay.shrinkage.strain: equilibria of grains that shrink do "
+            "not go on from a response, and keep no state for later ones "
+            "(dem-replay.keep_state): use engine=explicit");
     if (settings->capillarity.suction > 0)
         return refuse(reason, STATUS_BAD_DATA,
                       "dem-replay.capillary.suction: equilibria do not drain: use "
@@ -77,6 +80,7 @@ static enum status create(struct run *run, struct reason *reason)
         .material = settings->material,
         .bond = settings->bond,
         .unstressed = settings->unstressed,
+        .shrinks = settings->shrinkage.strain > 0,
         .relative_strength = settings->relative_strength,
         .tolerance = settings->equilibrium_tolerance,
         .most_iterations = settings->most_iterations,
@@ -156,6 +160,21 @@ static void keep(struct run *run)
         run->keeper->keep(run->keeper->context, &state->kept);
 }
 
+// To what is due under the load of the step; none swells where liquid comes back.
+static void shrink(struct run *run)
+{
+    const int n = run->packing->n_particle, row = run->place.step;
+    if (!run->load->shrinks || row < 0) return;
+    const double *before = quasi_static_shrinkage(last(run));
+    double *strain = NEW_ARRAY(double, n);
+    find_shrinkage(&run->settings->shrinkage, run->packing, row,
+                   run->load->saturation[row], dryness_at(run, row), strain);
+    for (int i = 0; i < n; i++)
+        strain[i] = fmax(strain[i], before[i]);
+    quasi_static_shrink(last(run), strain);
+    free(strain);
+}
+
 static enum status advance(struct run *run, struct reason *reason)
 {
     struct equilibria *state = run->state;
@@ -163,6 +182,7 @@ static enum status advance(struct run *run, struct reason *reason)
     const int before = quasi_static_unconverged(state->last, &grain);
     keep(run);
     take_forces(run);
+    shrink(run);
     const enum status status = find(run, reason);
     state->is_settled = quasi_static_unconverged(state->last, &grain) == before;
     return status;
@@ -191,6 +211,14 @@ static struct net_load reaction(const struct run *run)
                                    run->force);
 }
 
+// The solver's stress has compression above 0.
+static double lateral_tension(const struct run *run)
+{
+    double stress[3][3];
+    quasi_static_stress(last(run), stress);
+    return -(stress[0][0] + stress[1][1]) / 2;
+}
+
 static const struct dem_crack *cracks(const struct run *run, int *count)
 {
     return quasi_static_cracks(last(run), count);
@@ -201,6 +229,10 @@ static void observe(const struct run *run, struct snapshot *snapshot)
     quasi_static_displacements(last(run), snapshot->displacement);
     quasi_static_bonds_intact(last(run), snapshot->intact);
     snapshot->contact = quasi_static_contacts(last(run), &snapshot->n_contact);
+    if (run->load->shrinks)
+        snapshot->shrinkage =
+            duplicate(quasi_static_shrinkage(last(run)),
+                      (size_t)run->packing->n_particle, sizeof *snapshot->shrinkage);
 }
 
 static struct array_list save(const struct run *run)
@@ -240,6 +272,7 @@ const struct replay_engine replay_by_equilibria = {
     .cycles = cycles,
     .unbalanced_ratio = unbalanced_ratio,
     .is_settled = is_settled,
+    .lateral_tension = lateral_tension,
     .reaction = reaction,
     .cracks = cracks,
     .observe = observe,

@@ -53,8 +53,7 @@ struct replay_engine {
     int64_t (*cycles)(const struct run *);                 // so far
     double (*unbalanced_ratio)(const struct run *);
     bool (*is_settled)(const struct run *); // all is at rest under the step's load
-    double (*lateral_tension)(const struct run *); // response.lateral_tension; NULL: of
-                                                   // an engine that cannot shrink
+    double (*lateral_tension)(const struct run *); // response.lateral_tension
     // Of supports on the grains (support_reaction.h).
     struct net_load (*reaction)(const struct run *);
     // All since the bonds were whole, in their order; the engine owns them.

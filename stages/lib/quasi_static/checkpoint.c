@@ -68,7 +68,7 @@ static const struct part of_pairs[] = {
     {offsetof(struct contact_pair, overlap), 1},
     {offsetof(struct contact_pair, bond_radius), 1},
     {offsetof(struct contact_pair, bond_stiffness), COMPONENTS},
-    {offsetof(struct contact_pair, point_overlap), 1},
+    {offsetof(struct contact_pair, free_stretch), 1},
     {offsetof(struct contact_pair, normal_stiffness), 1},
     {offsetof(struct contact_pair, shear_stiffness), 1},
     {offsetof(struct contact_pair, friction), 1},
@@ -80,27 +80,31 @@ static const struct part of_displacement[] = {{0, 6}}, of_vector[] = {{0, 3}},
                          of_number[] = {{0, 1}};
 
 #define PARTS(part) part, sizeof(part) / sizeof *(part)
-enum { TABLES = 6 };
+enum { TABLES = 7 };
 
 // Large displacements have frames that turn, those at the start, and places of the last
-// search besides.
+// search besides; grains that shrink, by how much.
 static int list_tables(const struct quasi_static *qs, struct table table[TABLES])
 {
     const struct large_state *large = qs->large;
+    int n = 3;
     table[0] = (struct table){"joints", qs->pair, qs->n_pair, sizeof *qs->pair,
                               PARTS(of_pairs)};
     table[1] = (struct table){"displacements", qs->previous, qs->n,
                               sizeof *qs->previous, PARTS(of_displacement)};
     table[2] = (struct table){"largest_load", (void *)&qs->largest_load, 1,
                               sizeof qs->largest_load, PARTS(of_number)};
-    if (!large) return 3;
-    table[3] = (struct table){"joints_at_start", large->start, qs->n_pair,
-                              sizeof *large->start, PARTS(of_frame)};
-    table[4] = (struct table){"joints_before", large->previous, qs->n_pair,
-                              sizeof *large->previous, PARTS(of_frame)};
-    table[5] = (struct table){"searched_at", large->searched_at, qs->n,
-                              sizeof *large->searched_at, PARTS(of_vector)};
-    return TABLES;
+    if (qs->shrinkage)
+        table[n++] = (struct table){"shrinkage", qs->shrinkage, qs->n,
+                                    sizeof *qs->shrinkage, PARTS(of_number)};
+    if (!large) return n;
+    table[n++] = (struct table){"joints_at_start", large->start, qs->n_pair,
+                                sizeof *large->start, PARTS(of_frame)};
+    table[n++] = (struct table){"joints_before", large->previous, qs->n_pair,
+                                sizeof *large->previous, PARTS(of_frame)};
+    table[n++] = (struct table){"searched_at", large->searched_at, qs->n,
+                                sizeof *large->searched_at, PARTS(of_vector)};
+    return n;
 }
 
 static int width_of(const struct table *table)

@@ -5,10 +5,11 @@
 //     d[SHEAR]     = t1 . (x_j - x_i) - t2 . (a_i w_i + a_j w_j)
 //     d[SHEAR + 1] = t2 . (x_j - x_i) + t1 . (a_i w_i + a_j w_j)
 //     d[TORSION], d[BENDING], d[BENDING + 1] = n, t1, t2 . (w_j - w_i)
-// Load: of the bond, bond_stiffness d [K 4.32-4.39]; of the contact, where the overlap
-// o = overlap - d[NORMAL] is not negative, a normal force -normal_stiffness o and a
-// shear force shear_stiffness (d - anchor) of at most friction normal_stiffness o; slip
-// moves the anchor [K 4.11-4.26]. The grains feel B^T load.
+// Load: of the bond, bond_stiffness d [K 4.32-4.39], d[NORMAL] less free_stretch; of
+// the contact, where the overlap o = overlap - d[NORMAL] is not negative, a normal
+// force -normal_stiffness o and a shear force shear_stiffness (d - anchor) of at most
+// friction normal_stiffness o; slip moves the anchor [K 4.11-4.26]. The grains feel B^T
+// load.
 #include "contact_pair.h"
 
 #include <string.h>
@@ -85,7 +86,7 @@ static void add_bond(const struct contact_pair *pair,
 {
     for (int k = 0; k < COMPONENTS; k++)
         response->load[k] = pair->bond_stiffness[k] * deformation[k];
-    response->load[NORMAL] -= pair->bond_stiffness[NORMAL] * pair->point_overlap;
+    response->load[NORMAL] -= pair->bond_stiffness[NORMAL] * pair->free_stretch;
     for (int k = 0; k < 3; k++) {
         response->slope[k][k] = pair->bond_stiffness[k];
         response->stiffness[k] = pair->bond_stiffness[3 + k];
@@ -207,7 +208,7 @@ void pair_break_bond(struct contact_pair *pair, const double deformation[COMPONE
 {
     pair->is_bonded = false;
     if (!pair->is_point) return;
-    pair->overlap = pair->point_overlap;
+    pair->overlap = pair->free_stretch;
     pair->contact = (struct contact){CONTACT_OPEN, {0, 0}};
     if (pair->overlap - deformation[NORMAL] >= 0)
         pair->contact.state = CONTACT_STICKING;
@@ -225,7 +226,7 @@ static struct overload point_overload(const struct contact_pair *pair,
 {
     const double *stiffness = pair->bond_stiffness;
     const double tension =
-        stiffness[NORMAL] * (deformation[NORMAL] - pair->point_overlap);
+        stiffness[NORMAL] * (deformation[NORMAL] - pair->free_stretch);
     const double shear = stiffness[SHEAR] * size_of_two(deformation + SHEAR);
     return (struct overload){tension / normal_strength, shear / shear_strength};
 }
@@ -243,7 +244,8 @@ struct overload pair_overload(const struct contact_pair *pair,
     const double bending = stiffness[BENDING] * size_of_two(deformation + BENDING);
     const double shear = stiffness[SHEAR] * size_of_two(deformation + SHEAR);
     const double twisting = stiffness[TORSION] * fabs(deformation[TORSION]);
-    const double tension = stiffness[NORMAL] * deformation[NORMAL];
+    const double tension =
+        stiffness[NORMAL] * (deformation[NORMAL] - pair->free_stretch);
     return (struct overload){
         (tension + beta * 4 * bending / radius) / area / normal_strength,
         (shear + beta * 2 * twisting / radius) / area / shear_strength};

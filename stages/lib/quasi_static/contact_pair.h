@@ -53,10 +53,12 @@ struct contact_pair {
     double moments_left_out; // of its stresses: 1 - beta (dem_bond_material)
     // Parallel bond [K 4.32-4.39]: k^n A, k^s A twice, k^s J, k^n I twice. Contact bond
     // (IS POINT) [K 4.2]: the springs of the contact, also in tension; when it breaks,
-    // POINT OVERLAP becomes the OVERLAP of the contact.
+    // FREE STRETCH becomes the OVERLAP of the contact.
     double bond_stiffness[COMPONENTS];
     bool is_point;
-    double point_overlap;                     // at the start; parallel bonds: 0
+    double
+        free_stretch; // deformation[NORMAL] without tension in the bond: of a contact
+                      // bond the overlap at the start, else 0; less as grains shrink
     double normal_stiffness, shear_stiffness; // of the contact [K 4.22]; no shear
                                               // without friction
     double friction;

@@ -98,7 +98,7 @@ static void bond_at_point(const struct contact_pair_setup *setup,
     for (int k = TORSION; k < COMPONENTS; k++)
         pair->bond_stiffness[k] =
             setup->rolling * pair->bond_stiffness[SHEAR] * pair->arm[0] * pair->arm[1];
-    pair->point_overlap = pair->overlap;
+    pair->free_stretch = pair->overlap;
     pair->overlap = -INFINITY;
     pair->contact.state = CONTACT_OPEN;
 }

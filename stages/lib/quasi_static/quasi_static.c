@@ -146,6 +146,7 @@ enum status quasi_static_create(struct quasi_static **result,
         *of_grains[k] = NEW_ARRAY(struct displacement, n);
     qs->is_detached = NEW_ARRAY(bool, n);
     qs->fragments = fragments_init(n);
+    if (setup->shrinks) qs->shrinkage = NEW_ARRAY(double, n);
     find_diagonals(qs);
     allocate_pair_arrays(qs);
     qs->may_detach = !setup->large_displacements;
@@ -162,9 +163,10 @@ void quasi_static_free(struct quasi_static *qs)
     free_pair_arrays(qs);
     large_state_free(qs->large);
     splitting_free(qs->splitting);
-    void *const owned[] = {
-        qs->pair, qs->displacement, qs->load, qs->dashpot_force, qs->residual,
-        qs->step, qs->previous,     qs->rhs,  qs->is_detached,   qs->crack};
+    void *const owned[] = {qs->pair,          qs->displacement, qs->load,
+                           qs->dashpot_force, qs->residual,     qs->step,
+                           qs->previous,      qs->rhs,          qs->is_detached,
+                           qs->crack,         qs->shrinkage};
     for (size_t k = 0; k < sizeof owned / sizeof *owned; k++)
         free(owned[k]);
     free(qs);

@@ -36,6 +36,7 @@ struct quasi_static_setup {
     const uint8_t *fixed;          // (n_particle) 1: neither moves nor turns
     bool has_wall;                 // beneath, at the lower z wall
     bool unstressed;               // overlaps of the packing do not push
+    bool shrinks;                  // quasi_static_shrink will be called
     struct dem_material material;  // density and damping do not matter
     struct dem_bond_material bond;
     const double *relative_strength; // (n_bond) of the bonds; NULL: 1
@@ -61,6 +62,12 @@ enum status quasi_static_create(struct quasi_static **result,
                                 const struct quasi_static_setup *setup,
                                 struct reason *reason);
 void quasi_static_free(struct quasi_static *qs);
+
+// From the next equilibrium on each grain has become smaller by the linear STRAIN
+// (n_particle) since the start, and its bonds and contacts with it, as by
+// dem_set_shrinkage. Only if the setup `shrinks`. O(pairs).
+void quasi_static_shrink(struct quasi_static *qs, const double *strain);
+const double *quasi_static_shrinkage(const struct quasi_static *qs); // NULL: none
 
 // The next equilibrium, under FORCE (n_particle) N, with the history of those before.
 // STATUS_NOT_CONVERGED: displacements of what is held are not small; or if they may be
@@ -90,6 +97,9 @@ struct dem_contact *quasi_static_contacts(const struct quasi_static *qs, int *co
 // Force, N, and moment about ABOUT, N m, of fixed grains and the wall on all others.
 void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
                            struct vector *force, struct vector *moment);
+// The stress that grains and the wall put on each other, Pa, compression > 0, over the
+// volume of the packing's box, as of dem_census.
+void quasi_static_stress(const struct quasi_static *qs, double stress[3][3]);
 // The forces from outside that count (n_particle) N; what was taken off is returned.
 struct net_load quasi_static_load(const struct quasi_static *qs, struct vector *force);
 

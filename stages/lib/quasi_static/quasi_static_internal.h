@@ -69,6 +69,8 @@ struct quasi_static {
     struct displacement *residual;     // (n) load - dashpots - B^T response
     struct displacement *previous;     // (n) u of the last equilibrium or step in time
     double (*last_increment)[COMPONENTS]; // (n_pair) of the deformation, up to there
+    double
+        *shrinkage; // (n) strain of each grain since the start; NULL: nothing shrinks
     // Loads.
     const struct vector *force;         // (n) N, from outside
     struct displacement *load;          // (n) of it what counts
@@ -117,6 +119,9 @@ struct contact_pair_setup pair_setup_of(const struct quasi_static *qs);
 // All arrays (n_pair), the matrix and the contact solver, anew and empty.
 void allocate_pair_arrays(struct quasi_static *qs);
 void free_pair_arrays(struct quasi_static *qs);
+
+// PAIR, made of grains as they were at the start, becomes one of grains that shrank.
+void shrink_new_pair(const struct quasi_static *qs, struct contact_pair *pair);
 
 // ---- loads --------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@
 //     overlap       L (overlap at the start - d[NORMAL]),
 //     force         K L (B^T load at the first grain): what the second one feels,
 //     moment        K L^2 (B^T load), in reactions with (place - about) x force,
+//     stress        K L^2 / volume, sum of branch x force,
 //     unbalanced    mean |residual| of grains that move / mean |force| of pairs
 //                   [K 4.20].
 // Grains feel -B^T load, so fixed ones and the wall hold with B^T load: the reaction is
@@ -86,7 +87,7 @@ static struct dem_contact contact_of(const struct quasi_static *qs, int j)
     const struct vector from =
         add(qs->displacement[i].translation, scale(pair->arm[0], pair->axis[0]));
     const bool is_point = pair->is_bonded && pair->is_point;
-    const double overlap = is_point ? pair->point_overlap : pair->overlap;
+    const double overlap = is_point ? pair->free_stretch : pair->overlap;
     return (struct dem_contact){
         .particle = {i, pair->grain[1]},
         .bond = pair->is_bonded ? pair->bond : -1,
@@ -142,6 +143,26 @@ void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
                          pair_load_on_grain(&qs->pair[j], end, qs->response[j].load),
                          loaded_at(qs, &qs->pair[j], end), about, force, moment);
         }
+}
+
+// From centre to centre, as far as they are apart now where displacements are large.
+void quasi_static_stress(const struct quasi_static *qs, double stress[3][3])
+{
+    const struct vector edge = subtract(qs->packing->upper, qs->packing->lower);
+    const double unit =
+        qs->stiffness * qs->length * qs->length / (edge.x * edge.y * edge.z);
+    for (int k = 0; k < 9; k++)
+        stress[k / 3][k % 3] = 0;
+    for (int j = 0; j < qs->n_pair; j++) {
+        const struct contact_pair *pair = &qs->pair[j];
+        if (pair->is_detached) continue;
+        const struct vector force =
+            pair_load_on_grain(pair, 0, qs->response[j].load).translation;
+        const double branch = pair->arm[0] + (pair->grain[1] < 0 ? 0 : pair->arm[1]);
+        for (int k = 0; k < 9; k++)
+            stress[k / 3][k % 3] += unit * branch * component(pair->axis[0], k / 3) *
+                                    component(force, k % 3);
+    }
 }
 
 double quasi_static_unbalanced_ratio(const struct quasi_static *qs)

@@ -52,8 +52,10 @@ struct linear_law {
 static struct linear_law open_law(const struct contact_pair *pair)
 {
     struct linear_law law = {.constant = {0}};
-    for (int k = 0; k < 3 && pair->is_bonded; k++)
+    if (!pair->is_bonded) return law;
+    for (int k = 0; k < 3; k++)
         law.slope[k][k] = pair->bond_stiffness[k];
+    law.constant[0] = -pair->bond_stiffness[NORMAL] * pair->free_stretch;
     return law;
 }
 
@@ -61,7 +63,7 @@ static struct linear_law closed_law(const struct contact_pair *pair)
 {
     struct linear_law law = open_law(pair);
     law.slope[0][0] += pair->normal_stiffness;
-    law.constant[0] = -pair->normal_stiffness * pair->overlap;
+    law.constant[0] -= pair->normal_stiffness * pair->overlap;
     return law;
 }
 

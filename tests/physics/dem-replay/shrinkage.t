@@ -183,8 +183,6 @@ with scratch_paths() as at:
 
     ok(refused("dem-replay", "-p", at("layer.json"), "-s", "shrinkage.strain=0",
                at("layer.h5"), "-o", at("no.h5")), "a packing that does not shrink: refused")
-    ok(refused("dem-replay", "-p", at("layer.json"), "-s", "engine=quasi-static",
-               at("layer.h5"), "-o", at("no.h5")), "equilibria: refused")
     ok(refused("dem-replay", "-p", at("layer.json"), "-s", "bridges.volume=1e-22",
                at("layer.h5"), "-o", at("no.h5")), "with liquid bridges: refused")
 

@@ -93,6 +93,7 @@ static void append_pair(struct quasi_static *qs, struct contact_pair pair)
     qs->pair = reallocate(qs->pair, count, sizeof *qs->pair);
     large->start = reallocate(large->start, count, sizeof *large->start);
     large->previous = reallocate(large->previous, count, sizeof *large->previous);
+    shrink_new_pair(qs, &pair);
     large->start[qs->n_pair] = frame_of(&pair);
     qs->pair[qs->n_pair] = new_pair(qs, pair, &large->previous[qs->n_pair]);
     qs->n_pair++;

@@ -87,8 +87,8 @@ static void move_contacts(struct quasi_static *qs, struct splitting *s)
         if (pair->is_detached) continue;
         for (int k = 0; k < 3; k++)
             load[k] -= s->stiffness * s->place[c][k];
-        if (pair->is_bonded && pair->is_point)
-            load[NORMAL] -= pair->bond_stiffness[NORMAL] * pair->point_overlap;
+        if (pair->is_bonded)
+            load[NORMAL] -= pair->bond_stiffness[NORMAL] * pair->free_stretch;
         pair_subtract_load(pair, load, s->right);
     }
 }
