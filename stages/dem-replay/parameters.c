@@ -186,7 +186,8 @@ const struct parameter replay_table[] = {
              "where it is far faster, else explicit"},
     {"quasi_static.tolerance", PARAMETER_NUMBER, "1", "1e-8",
      AT(settings.equilibrium_tolerance), ABOVE(0),
-     .text = "largest residual force or moment on a grain, over the largest load"},
+     .text = "largest residual force or moment on a grain, over the largest load, or "
+             "push of an overlap at the start"},
     {"quasi_static.most_iterations", PARAMETER_INTEGER, "1", "40",
      AT(settings.most_iterations), BETWEEN(1, 1e9),
      .text = "most steps in time, slowed by dashpots, if equilibrium is not found at "

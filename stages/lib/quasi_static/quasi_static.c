@@ -62,6 +62,23 @@ static void find_diagonals(struct quasi_static *qs)
     if (!qs->setup.large_displacements) qs->grain_dashpot = 0.03 * softest;
 }
 
+// The largest force with which an overlap of the packing pushes a grain that may move,
+// or a contact bond over a gap pulls it. Where loads are far smaller, or none, their
+// share would be less than the rounding of what these forces leave.
+static double largest_push_at_start(const struct quasi_static *qs)
+{
+    const double none[COMPONENTS] = {0};
+    double most = 0;
+    for (int j = 0; j < qs->n_pair; j++) {
+        const int32_t *grain = qs->pair[j].grain;
+        const bool is_held =
+            qs->setup.fixed[grain[0]] && (grain[1] < 0 || qs->setup.fixed[grain[1]]);
+        if (!is_held)
+            most = fmax(most, fabs(pair_respond(&qs->pair[j], none).load[NORMAL]));
+    }
+    return most;
+}
+
 // Each pair must be near in one image only: twice the longest distance at which two
 // grains are a pair, as in the engine of cycles.
 static enum status check_periods(const struct packing *packing, struct reason *reason)
@@ -148,6 +165,7 @@ enum status quasi_static_create(struct quasi_static **result,
     qs->fragments = fragments_init(n);
     if (setup->shrinks) qs->shrinkage = NEW_ARRAY(double, n);
     find_diagonals(qs);
+    qs->largest_load = largest_push_at_start(qs);
     allocate_pair_arrays(qs);
     qs->may_detach = !setup->large_displacements;
     qs->kinematics = qs->may_detach ? &small_displacements : &large_displacements;

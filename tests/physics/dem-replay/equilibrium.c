@@ -223,6 +223,49 @@ TEST(what_breaks_off_has_not_moved_far)
     packing_free(&packing);
 }
 
+// Without a load, or under a tiny one, overlaps that push are the scale: grains of many
+// sizes in a block come to rest, and a row grows by o k / (k + 2 k^n A) at each overlap
+// o.
+TEST(overlaps_push_without_a_load)
+{
+    enum { N = 4 };
+    const double overlap = 1e-5 * RADIUS, glue = bond_stiffness * bond_area();
+    const struct vector none[BLOCK] = {{0, 0, 0}};
+    struct block *block = new_block();
+    for (int i = 0; i < BLOCK; i++)
+        block->packing.radius[i] *= 1 + 1e-5 * (i * 7 % 5 + 1);
+    struct vector tiny[BLOCK];
+    load_block(tiny, 1e-10 * contact_stiffness * overlap);
+    for (int way = 0; way < 8; way++) {
+        block->setup.large_displacements = way % 2;
+        block->setup.increment = 0.02;
+        block->setup.material.friction = way / 2 % 2 * 0.5;
+        struct quasi_static *equilibrium = make_equilibrium(&block->setup);
+        next_equilibrium(equilibrium, way / 4 ? tiny : none);
+        int last;
+        assert_int_equal(quasi_static_unconverged(equilibrium, &last), 0);
+        assert_int_equal(quasi_static_instabilities(equilibrium, &last), 0);
+        assert_true(quasi_static_unbalanced_ratio(equilibrium) < 1e-9);
+        quasi_static_free(equilibrium);
+    }
+    free_block(block);
+
+    struct packing packing = cubic_lattice(N, 1, 1, false);
+    for (int i = 0; i < N; i++)
+        packing.position[i].x -= i * overlap;
+    const uint8_t fixed[N] = {1};
+    const struct quasi_static_setup setup = setup_of(&packing, fixed);
+    struct quasi_static *equilibrium = make_equilibrium(&setup);
+    struct vector moved[N];
+    next_equilibrium(equilibrium, none);
+    quasi_static_displacements(equilibrium, moved);
+    const double each = overlap * contact_stiffness / (contact_stiffness + 2 * glue);
+    for (int i = 1; i < N; i++)
+        assert_close(moved[i].x, i * each, 1e-8);
+    quasi_static_free(equilibrium);
+    packing_free(&packing);
+}
+
 // A grain pressed on the wall sinks in by F/k, as a wall is rigid [K 4.22].
 TEST(a_wall_is_rigid)
 {
