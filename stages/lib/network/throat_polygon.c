@@ -28,6 +28,7 @@
 // One face as the throat sees it: its two sides relative to a place on the throat.
 struct seen_face {
     struct vector centre[2]; // of a wall: the foot of the grain's
+    int32_t grain[2];        // of the packing; a wall below 0
     double radius[2];        // 0: not a grain of the body
     bool wall;               // one of them is a wall
     bool body;               // that of a body: perhaps round
@@ -52,9 +53,11 @@ static struct seen_face seen_face(const struct network *network,
     struct seen_face seen = {.wall = wall, .body = wall && -1 - grain[1] >= WALL_OUTER};
     seen.centre[turned] = subtract(first, from);
     seen.centre[!turned] = subtract(second, from);
-    for (int end = 0; end < 2; end++)
+    for (int end = 0; end < 2; end++) {
+        seen.grain[end ^ turned] = grain[end];
         if (grain[end] >= 0 && !is_auxiliary(packing, grain[end]))
             seen.radius[end ^ turned] = packing->radius[grain[end]];
+    }
     return seen;
 }
 
@@ -103,7 +106,8 @@ struct throat_polygon throat_polygon_init(int most)
                     .overlap = NEW_ARRAY(struct section_overlap, most),
                     .gap = NEW_ARRAY(struct section_gap, most)},
         .face = NEW_ARRAY(struct seen_face, most),
-        .centre = NEW_ARRAY(struct vector, 2 * most)};
+        .centre = NEW_ARRAY(struct vector, 2 * most),
+        .number = NEW_ARRAY(int32_t, 2 * most)};
 }
 
 void throat_polygon_free(struct throat_polygon *polygon)
@@ -113,10 +117,12 @@ void throat_polygon_free(struct throat_polygon *polygon)
     free(polygon->section.gap);
     free(polygon->face);
     free(polygon->centre);
+    free(polygon->number);
 }
 
-// Adds ANGLE to the grain of END of FACE, which may be there from another face. Returns
-// its number.
+// Adds ANGLE to the grain of END of FACE, which may be there from another face: that of
+// the same number and, of its images, at the same place. Another grain may have its
+// centre within it. Returns its number in the section.
 static int add_angle(struct throat_polygon *polygon, const struct seen_face *face,
                      int end, struct vector along, double angle)
 {
@@ -124,7 +130,8 @@ static int add_angle(struct throat_polygon *polygon, const struct seen_face *fac
     const struct vector centre = face->centre[end];
     const double radius = face->radius[end], height = dot(centre, along);
     int k = 0;
-    while (k < section->n_grain && !(distance(polygon->centre[k], centre) < radius))
+    while (k < section->n_grain && !(polygon->number[k] == face->grain[end] &&
+                                     distance(polygon->centre[k], centre) < radius))
         k++;
     if (k == section->n_grain) {
         const struct vector across = subtract(centre, scale(height, along));
@@ -134,6 +141,7 @@ static int add_angle(struct throat_polygon *polygon, const struct seen_face *fac
             height,
             norm(across),
             {dot(across, polygon->axis[0]), dot(across, polygon->axis[1])}};
+        polygon->number[section->n_grain] = face->grain[end];
         polygon->centre[section->n_grain++] = centre;
     }
     section->grain[k].angle += angle;

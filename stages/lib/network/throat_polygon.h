@@ -14,6 +14,7 @@ struct throat_polygon {
     struct open_section section;
     struct seen_face *face;
     struct vector *centre; // of section.grain, from a place on the throat
+    int32_t *number;       // of section.grain, in the packing
     struct vector axis[2]; // across the throat
     double from_first;     // of the way along the throat: that place
 };

@@ -107,6 +107,14 @@ with scratch_paths() as at:
     other = shapes("other", grains[random.permutation(len(grains))], edge)
     ok(all(np.allclose(a, b, rtol=1e-9, atol=0) for a, b in zip(one, other)),
        "grains in another order: the same conductances")
+    # Grains with others' centres within them are others all the same.
+    within = np.c_[np.loadtxt(at("empty.txt"))[:, :3], .02 + .1 * random.random(200)]
+    near = np.linalg.norm(within[:, None, :3] - within[None, :, :3], axis=2) < within[:, 3]
+    ok(near.sum() > 250, "centres lie within other grains", near.sum() - 200)
+    one_of, other_of = (shapes("within", within[order], edge)
+                        for order in (np.arange(200), random.permutation(200)))
+    ok(all(np.allclose(a, b, rtol=1e-6, atol=1e-9 * a.max()) for a, b in zip(one_of, other_of)),
+       "they conduct the same in another order", [np.abs(a - b).max() / a.max() for a, b in zip(one_of, other_of)])
     turned = shapes("turned", grains[:, [1, 2, 0, 3]], edge[[1, 2, 0]])
     ok(all(np.allclose(a, b, rtol=1e-9, atol=0) for a, b in zip(one, turned)),
        "axes in another order: the same conductances")
