@@ -310,18 +310,28 @@ static struct vector in_box(const struct packing *packing, struct vector lower,
     return x;
 }
 
+// Whether grains that touch, APART within a box with that EDGE, do so across a side of
+// it that repeats.
+static bool is_across(const struct packing *packing, struct vector edge,
+                      struct vector apart)
+{
+    for (int axis = 0; axis < 3; axis++)
+        if (packing->periodic[axis] &&
+            fabs(component(apart, axis)) > component(edge, axis) / 2)
+            return true;
+    return false;
+}
+
 // The contacts between grains of a snapshot, without those with walls and around the
-// box; FORCE is moved along. Returns how many are left. A contact around a box that
-// repeats would be drawn across it: those longer than twice the grains' size are left
-// out.
-static int drawn_contacts(const struct packing *packing, const struct vector *at,
-                          int64_t count, int32_t (*pair)[2], struct vector *force)
+// box, which would be drawn across it; FORCE is moved along. Returns how many are left.
+static int drawn_contacts(const struct packing *packing, struct vector edge,
+                          const struct vector *at, int64_t count, int32_t (*pair)[2],
+                          struct vector *force)
 {
     int kept = 0;
     for (int64_t c = 0; c < count; c++) {
         const int32_t i = pair[c][0], j = pair[c][1];
-        if (i < 0 || j < 0 ||
-            distance(at[i], at[j]) > 2 * (packing->radius[i] + packing->radius[j]))
+        if (i < 0 || j < 0 || is_across(packing, edge, subtract(at[j], at[i])))
             continue;
         memmove(pair[kept], pair[c], sizeof *pair);
         force[kept++] = force[c];
@@ -367,8 +377,8 @@ static void motion_series(const struct artifact *artifact, struct frames *frames
         struct vector *at = position + s * n;
         for (int i = 0; i < n; i++)
             at[i] = in_box(&packing, lower[s], upper[s], at[i]);
-        const int drawn =
-            drawn_contacts(&packing, at, contacts[s], pair + first, force + first);
+        const int drawn = drawn_contacts(&packing, subtract(upper[s], lower[s]), at,
+                                         contacts[s], pair + first, force + first);
         const struct vtu_array points[] = {{"velocity", &velocity[s * n].x, 3, NULL},
                                            {"spin", &spin[s * n].x, 3, NULL},
                                            {"radius", packing.radius, 1, NULL},

@@ -300,4 +300,14 @@ for kind, bonds, said in ("none", 0, b"none of its 1 bonds are in the packing wr
     with h5py.File(at("out")) as file:
         ok(len(file["bonds/particles"]) == bonds and (said in out.stderr if said else not out.stderr),
            f"bond.kind={kind} writes {bonds} of 1 bonds and says so", out)
+
+# Three grains that all touch, 0 and 1 across a side of a narrow box that repeats: no line runs through the box.
+narrow = packing([[0.6e-3, 0, 0, 1e-3], [3.65e-3, 0, 0, 1e-3], [2.1e-3, 1.2e-3, 0, 1e-3]], (0, -5e-3, -5e-3),
+                 (5e-3, 5e-3, 5e-3), (True, False, False))
+with simulate(narrow, {"duration": 1e-6, "gravity": [0, 0, 0]}) as motion:
+    ok(motion["contacts/particles"][:3].tolist() == [[0, 1], [0, 2], [1, 2]], "three grains touch")
+run("inspect", "--vtk", at("narrow"), at("motion"))
+with open(at("narrow-0000.vtu")) as file:
+    lines = file.read().split('Name="connectivity"')[1].split("<")[0].split(">")[1].split()
+ok(lines == ["0", "2", "1", "2"], "ParaView gets the contacts within the box", lines)
 done()
