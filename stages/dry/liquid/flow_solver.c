@@ -187,7 +187,7 @@ void flow_solver_follow(struct flow_solver *solver, const struct occupancy *occu
     reserve(solver, clusters->n_id);
     const int old = solver->members.cluster[throat];
     struct cluster_memory *memory = &solver->cluster[old];
-    memory->emptied += occupancy->volume[throat];
+    memory->changed += occupancy->volume[throat];
     const int32_t *node = occupancy->network->throat_nodes[throat];
     for (int end = 0; end < 2; end++)
         cut_node(solver, memory, node[end]);

@@ -33,8 +33,8 @@ struct cluster_memory {
     double resistance; // at least that of all its throats in series,
     int size;          // when it had so many throats
     // When its flow was last found: the volume of its liquid (0: it is to be found) and
-    // what evaporated; since then, the volume of the throats that have emptied.
-    double liquid, evaporation, emptied;
+    // what evaporated; since then, the volume of the throats that emptied or refilled.
+    double liquid, evaporation, changed;
 };
 
 struct flow_solver {

@@ -9,8 +9,8 @@
 // so that the losses add up to what the cluster evaporates. A throat that empties hands
 // its loss to the others in this way: a change that the next solution spreads as the
 // flow does. The flow is found again when throats with flow->step of the cluster's
-// liquid have emptied, when it evaporates so much more or less, or when the share is
-// far from 1: then the throat that emptied was the one that fed the others.
+// liquid have emptied or refilled, when it evaporates so much more or less, or when the
+// share is far from 1: then the throat that emptied was the one that fed the others.
 #include "kept_flow.h"
 
 #include <math.h>
@@ -34,7 +34,7 @@ void kept_flow_note(const struct liquid_flow *flow,
     const struct flow_solver *solver = flow->solver;
     struct cluster_memory *memory = memory_of(flow, problem);
     memory->evaporation = problem->evaporation;
-    memory->liquid = memory->emptied = 0;
+    memory->liquid = memory->changed = 0;
     for (enum throat_list l = 0; l < LISTS; l++)
         for (int t = first_throat(solver, problem, l); t >= 0; t = next_throat(flow, t))
             memory->liquid += compensated_value(solver->occupancy->liquid[t]);
@@ -45,7 +45,7 @@ static bool has_changed_little(const struct liquid_flow *flow,
 {
     const struct cluster_memory *memory = memory_of(flow, problem);
     return memory->liquid > 0 && problem->n_throat > 1 &&
-           memory->emptied <= flow->step * memory->liquid &&
+           memory->changed <= flow->step * memory->liquid &&
            fabs(problem->evaporation - memory->evaporation) <=
                flow->step * fabs(memory->evaporation);
 }
@@ -62,16 +62,23 @@ static double inflow_if_moving(const struct liquid_flow *flow,
     return n > 0 ? n * meniscus_arm(flow, throat, n) * (behind - entry) : 0;
 }
 
-// Who begins to move and who stops.
-static void revise(struct liquid_flow *flow, const struct cluster_problem *problem,
-                   int throat)
+// The menisci of throats that have refilled.
+static void stop_menisci(struct liquid_flow *flow,
+                         const struct cluster_problem *problem)
+{
+    const struct occupancy *occupancy = flow->solver->occupancy;
+    for (int t = first_meniscus(flow, problem); t >= 0; t = next_throat(flow, t)) {
+        if (!flow->moving[t] || !throat_is_full(occupancy, t) || loss_of(flow, t) >= 0)
+            continue;
+        flow->moving[t] = false;
+        memory_of(flow, problem)->changed += occupancy->volume[t];
+    }
+}
+
+static void begin_to_move(struct liquid_flow *flow,
+                          const struct cluster_problem *problem, int throat)
 {
     struct flow_solver *solver = flow->solver;
-    if (flow->moving[throat]) {
-        if (throat_is_full(solver->occupancy, throat) && loss_of(flow, throat) < 0)
-            flow->moving[throat] = false;
-        return;
-    }
     const double inflow = inflow_if_moving(flow, problem, throat);
     if (!(inflow < solver->evaporation[throat])) return;
     flow->moving[throat] = true;
@@ -80,11 +87,12 @@ static void revise(struct liquid_flow *flow, const struct cluster_problem *probl
 
 bool kept_flow_goes_on(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
-    if (!has_changed_little(flow, problem)) return false;
     struct flow_solver *solver = flow->solver;
+    stop_menisci(flow, problem);
+    if (!has_changed_little(flow, problem)) return false;
     double lost = 0, gained = 0;
     for (int t = first_meniscus(flow, problem); t >= 0; t = next_throat(flow, t)) {
-        revise(flow, problem, t);
+        if (!flow->moving[t]) begin_to_move(flow, problem, t);
         const double loss = flow->moving[t] ? loss_of(flow, t) : 0;
         if (loss > 0)
             lost += loss;
