@@ -367,6 +367,13 @@ static void end_throats(struct emptying_times *times)
         qsort(times->ended, (size_t)times->n_ended, sizeof *times->ended, rising_ints);
 }
 
+double emptying_times_next_loss(struct emptying_times *times)
+{
+    const double end = first_end(times);
+    return end < INFINITY ? vapour_rate(&times->occupancy->vapour) * (end - times->now)
+                          : 0;
+}
+
 double emptying_times_advance(struct emptying_times *times)
 {
     struct occupancy *occupancy = times->occupancy;

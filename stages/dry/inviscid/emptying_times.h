@@ -74,6 +74,9 @@ struct emptying_times emptying_times_init(struct occupancy *occupancy, bool by_t
 // nothing evaporates any more.
 double emptying_times_advance(struct emptying_times *times);
 
+// What evaporates until then; 0 if nothing does any more.
+double emptying_times_next_loss(struct emptying_times *times);
+
 // Gas fills the ended throats. The timers run on with the rates that follow.
 void emptying_times_empty_ended(struct emptying_times *times);
 

@@ -42,7 +42,6 @@ static void record_changes(struct run *run)
 // The imbalance is looked at where steps are recorded only: it costs a sum over all.
 static void record_step(struct run *run)
 {
-    if (!step_is_due(run)) return;
     record_changes(run);
     record_state(run);
     run->imbalance = fmax(run->imbalance, fabs(emptying_times_imbalance(&run->times)));
@@ -67,6 +66,9 @@ static enum status refuse_films(const struct run *run, struct reason *reason)
 enum status drying_step_inviscid(struct run *run, struct reason *reason)
 {
     struct emptying_times *times = &run->times;
+    if (run->conditions->stop_saturation > 0 &&
+        last_step_but_one_is_due(run, emptying_times_next_loss(times)))
+        record_step(run);
     const double rate = rate_now(run);
     const double by_films = times->films ? times->films->evaporation : 0;
     const double pace = vapour_pace(&run->occupancy.vapour);
@@ -88,6 +90,6 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
         return refuse_vapour(run, reason);
     if (times->films && times->films->failed) return refuse_films(run, reason);
     note_breakthrough(run);
-    record_step(run);
+    if (step_is_due(run)) record_step(run);
     return STATUS_OK;
 }

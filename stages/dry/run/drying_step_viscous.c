@@ -125,7 +125,12 @@ static void empty_throats(struct run *run)
 
 void carry_out_losses(struct run *run)
 {
-    advance(run, fmin(time_to_first(run), time_to_stop(run)));
+    const double duration = fmin(time_to_first(run), time_to_stop(run));
+    if (last_step_but_one_is_due(run, rate_now(run) * duration)) {
+        record_changes(run);
+        record_state(run);
+    }
+    advance(run, duration);
     empty_throats(run);
 }
 

@@ -19,6 +19,9 @@
 #include <math.h>
 #include <stdlib.h>
 
+// A run that comes so near to stop_saturation may end there.
+static const double ROUNDING = 1e-12;
+
 // total_liquid is a sum of many differences, so its rounding is kept out of [0,1].
 double network_saturation(const struct run *run)
 {
@@ -51,8 +54,18 @@ bool snapshot_is_due(const struct run *run)
                       fmax(conditions->snapshot[next], conditions->stop_saturation));
 }
 
-// The last step always is. Where steps were skipped, the rate recorded before them is
-// replaced by the mean over the interval.
+// Where steps were skipped, the rate recorded before them is replaced by the mean over
+// the interval.
+static void end_interval(struct run *run)
+{
+    if (run->n_skipped == 0) return;
+    const double evaporated =
+        compensated_difference(run->evaporated, run->step_evaporated);
+    const double time = compensated_difference(run->time, run->step_time);
+    recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
+}
+
+// The last step always is.
 bool step_is_due(struct run *run)
 {
     const double fallen = run->step_saturation - network_saturation(run);
@@ -61,12 +74,18 @@ bool step_is_due(struct run *run)
         run->n_skipped++;
         return false;
     }
-    if (run->n_skipped > 0) {
-        const double evaporated =
-            compensated_difference(run->evaporated, run->step_evaporated);
-        const double time = compensated_difference(run->time, run->step_time);
-        recorder_set_last_rate(&run->recorder, evaporated / time * run->scale.rate);
-    }
+    end_interval(run);
+    return true;
+}
+
+bool last_step_but_one_is_due(struct run *run, double loss)
+{
+    const double stop = run->conditions->stop_saturation;
+    const double rest = compensated_value(run->occupancy.total_liquid) - loss;
+    if (stop == 0 || run->n_skipped == 0 ||
+        rest > (stop + ROUNDING) * run->occupancy.capacity)
+        return false;
+    end_interval(run);
     return true;
 }
 

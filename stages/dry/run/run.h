@@ -66,6 +66,11 @@ bool snapshot_is_due(const struct run *run);
 // the rate of the last recorded step becomes the mean until now.
 bool step_is_due(struct run *run);
 
+// Whether this moment is to be recorded as the next step, which loses LOSS, scaled, may
+// be the last, and events have been skipped: of the last step a part is cut off that is
+// linear in time (truncate_history.h), so no other event may be in it.
+bool last_step_but_one_is_due(struct run *run, double loss);
+
 // Puts the ended in ascending order.
 void sort_ended(struct run *run);
 
