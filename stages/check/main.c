@@ -52,7 +52,9 @@ static const struct parameter table[] = {
      .text =
          "of the grains; this and the following parameters are for the suggestions"},
     {"grain_modulus", PARAMETER_NUMBER, "Pa", "6e10", AT(material.grain_modulus),
-     ABOVE(0), .text = "Young's modulus of the grains; default: glass"},
+     ABOVE(0),
+     .text = "Young's modulus of the grains, by default glass; counts as at most ten "
+             "times bond_modulus (radius_fraction 0.5), so that loads come to rest"},
     {"bond_modulus", PARAMETER_NUMBER, "Pa", "4e8", AT(material.bond_modulus), ABOVE(0),
      .text = "Young's modulus of the bonds"},
     {"radius_fraction", PARAMETER_NUMBER, "1", "0.5", AT(material.radius_fraction),

@@ -44,7 +44,7 @@ static bool has_changed_little(const struct liquid_flow *flow,
                                const struct cluster_problem *problem)
 {
     const struct cluster_memory *memory = memory_of(flow, problem);
-    return memory->liquid > 0 && problem->n_throat > 1 &&
+    return problem->n_throat > 1 &&
            memory->changed <= flow->step * memory->liquid &&
            fabs(problem->evaporation - memory->evaporation) <=
                flow->step * fabs(memory->evaporation);
@@ -88,6 +88,7 @@ static void begin_to_move(struct liquid_flow *flow,
 bool kept_flow_goes_on(struct liquid_flow *flow, const struct cluster_problem *problem)
 {
     struct flow_solver *solver = flow->solver;
+    if (!(memory_of(flow, problem)->liquid > 0)) return false;
     stop_menisci(flow, problem);
     if (!has_changed_little(flow, problem)) return false;
     double lost = 0, gained = 0;
