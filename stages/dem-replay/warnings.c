@@ -29,6 +29,25 @@ static void warn_if_restless(const struct load *load,
                    : ", or use engine=quasi-static, which finds equilibria");
 }
 
+// Where contacts are so much stiffer than bonds that they make the time step short
+// beside the motion of the body (docs/your-grains.md).
+static void warn_if_stiff(const struct packing *packing, const struct load *load,
+                          const struct replay_settings *settings,
+                          const struct response *response)
+{
+    static const double much = 100, enough = 50; // grains over bonds
+    const double neck = settings->bond.radius_fraction * mean_radius(packing);
+    const double bond = settings->bond.normal_stiffness * M_PI * neck * neck;
+    const double ratio = settings->material.normal_stiffness / bond;
+    if (packing->n_bond > 0 && settings->bond.kind == DEM_PARALLEL_BOND &&
+        settings->engine == ENGINE_EXPLICIT &&
+        response->n_unsettled > load->n_time / 2 && ratio > much && isfinite(ratio))
+        report("grains are %.0f times as stiff as bonds: with normal_stiffness and "
+               "shear_stiffness of %.2g N/m they come to rest in far fewer time steps "
+               "(docs/your-grains.md)",
+               ratio, enough * bond);
+}
+
 // Grains that have moved by more than the largest radius, at any snapshot, and the one
 // that moved most, by so many of these.
 struct far_grains {
@@ -138,6 +157,7 @@ void warn_of_replay(const struct packing *packing, const struct load *load,
                     const struct response *response)
 {
     warn_if_restless(load, settings, response);
+    warn_if_stiff(packing, load, settings, response);
     warn_if_sudden(packing, settings, response);
     warn_if_loose(packing, settings, response);
     warn_if_wet(load, settings, response);

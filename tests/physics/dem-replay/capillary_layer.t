@@ -175,6 +175,9 @@ with scratch_paths() as at:
     hasty = ["tolerance=1e-15", "cycles=16", "most_cycles=16"]
     ok("did not come to rest" in said(*hasty)[1] and "quasi-static" not in said(*hasty)[1],
        "steps that do not rest: no advice to use equilibria, which do not drain")
+    ok("times as stiff as bonds" not in said(*hasty)[1]
+       and "times as stiff as bonds" in said(*hasty, "normal_stiffness=2e6", "shear_stiffness=2e6")[1],
+       "nor of softer grains, unless they are far stiffer than bonds")
     ok(said(*hasty, "unsettled=stop")[0] == 3, "unsettled=stop ends with status 3")
     ok("force-protocol" not in said("gravity=9.81")[1],
        "with gravity: no advice about forces that there are none of")
