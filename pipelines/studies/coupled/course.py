@@ -9,7 +9,7 @@ portion that follows begins.
 """
 import math
 
-from common import artifact, document, parameters, refuse, summary
+from common import artifact, document, refuse, summary
 
 
 def course(folder, portions):
@@ -33,6 +33,6 @@ def course(folder, portions):
         cracks += [(s * room, count + n) for s, n in
                    zip(response["history/saturation"][:], response["history/cracks"][:])]
         count += response["history/cracks"][-1]
-        expelled = parameters(drying)["liquid_density"] * summary(network)["expelled_volume"]
+        expelled = drying["liquid"].attrs["density"] * summary(network)["expelled_volume"]
     return "\n\n".join("".join("\t".join(f"{x:.9g}" for x in row) + "\n" for row in block)
                        for block in (steps, moments, cracks))

@@ -277,6 +277,7 @@ with scratch() as folder:
        "refused in a line, and nothing lost", refusals)
 
     still = {"engine": "quasi-static", "support": "fixed"}
+    loop("water", SOFT, quick | {"pack": {"counts": [3, 3, 2]}, "conditions": {"liquid_density": None}}, False)
     loop("equilibria", "samples/stiff-5x5x10.json",
          {"pack": {"counts": [3, 3, 4]}, "force-protocol": {"steps": 30}, "dem-replay": still}, False)
     gone = still | {"support": "wall", "quasi_static": {"large_displacements": True}} # nothing presses it there
