@@ -205,6 +205,12 @@ static void update_cracks(struct crack_view *view, const struct packing *packing
                     cracks->mode_before[k]);
 }
 
+// Whether the way APART between grains that touch leads across a side that repeats.
+static bool is_across(const struct packing *packing, struct vector apart)
+{
+    return norm(subtract(shortest_image(packing, apart), apart)) > 0;
+}
+
 // The contacts as lines between grains that lie at MOVED: across a side that repeats
 // both ends are the first grain.
 static void draw_contacts(const struct packing *packing, const struct vector *moved,
@@ -213,10 +219,8 @@ static void draw_contacts(const struct packing *packing, const struct vector *mo
     for (int c = 0; c < view->n_contact; c++) {
         const int32_t *pair = view->contact[c];
         const struct vector apart = subtract(moved[pair[1]], moved[pair[0]]);
-        const struct vector nearest = shortest_image(packing, apart);
-        const bool across = norm(subtract(nearest, apart)) > 0;
         line[c][0] = pair[0];
-        line[c][1] = pair[across ? 0 : 1];
+        line[c][1] = pair[is_across(packing, apart) ? 0 : 1];
     }
 }
 
@@ -297,42 +301,27 @@ static void response_series(const struct artifact *artifact, struct frames *fram
     packing_free(&packing);
 }
 
-// The image of X in the box from LOWER to UPPER, where that repeats.
-static struct vector in_box(const struct packing *packing, struct vector lower,
-                            struct vector upper, struct vector x)
+// The image of X in the box, where that repeats.
+static struct vector in_box(const struct packing *packing, struct vector x)
 {
     for (int axis = 0; axis < 3; axis++) {
         if (!packing->periodic[axis]) continue;
-        const double from = component(lower, axis), at = component(x, axis);
-        const double edge = component(upper, axis) - from;
+        const double from = component(packing->lower, axis), at = component(x, axis);
+        const double edge = component(packing->upper, axis) - from;
         set_component(&x, axis, at - edge * floor((at - from) / edge));
     }
     return x;
 }
 
-// Whether grains that touch, APART within a box with that EDGE, do so across a side of
-// it that repeats.
-static bool is_across(const struct packing *packing, struct vector edge,
-                      struct vector apart)
-{
-    for (int axis = 0; axis < 3; axis++)
-        if (packing->periodic[axis] &&
-            fabs(component(apart, axis)) > component(edge, axis) / 2)
-            return true;
-    return false;
-}
-
 // The contacts between grains of a snapshot, without those with walls and around the
 // box, which would be drawn across it; FORCE is moved along. Returns how many are left.
-static int drawn_contacts(const struct packing *packing, struct vector edge,
-                          const struct vector *at, int64_t count, int32_t (*pair)[2],
-                          struct vector *force)
+static int drawn_contacts(const struct packing *packing, const struct vector *at,
+                          int64_t count, int32_t (*pair)[2], struct vector *force)
 {
     int kept = 0;
     for (int64_t c = 0; c < count; c++) {
         const int32_t i = pair[c][0], j = pair[c][1];
-        if (i < 0 || j < 0 || is_across(packing, edge, subtract(at[j], at[i])))
-            continue;
+        if (i < 0 || j < 0 || is_across(packing, subtract(at[j], at[i]))) continue;
         memmove(pair[kept], pair[c], sizeof *pair);
         force[kept++] = force[c];
     }
@@ -375,10 +364,12 @@ static void motion_series(const struct artifact *artifact, struct frames *frames
     int64_t first = 0;
     for (int64_t s = 0; s < n_snapshot; first += contacts[s], s++) {
         struct vector *at = position + s * n;
+        packing.lower = lower[s];
+        packing.upper = upper[s];
         for (int i = 0; i < n; i++)
-            at[i] = in_box(&packing, lower[s], upper[s], at[i]);
-        const int drawn = drawn_contacts(&packing, subtract(upper[s], lower[s]), at,
-                                         contacts[s], pair + first, force + first);
+            at[i] = in_box(&packing, at[i]);
+        const int drawn =
+            drawn_contacts(&packing, at, contacts[s], pair + first, force + first);
         const struct vtu_array points[] = {{"velocity", &velocity[s * n].x, 3, NULL},
                                            {"spin", &spin[s * n].x, 3, NULL},
                                            {"radius", packing.radius, 1, NULL},
