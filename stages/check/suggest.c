@@ -12,23 +12,21 @@
 // ones, 400 lognormal (spread 0.3) and 400 uniform (1:4), from which they differ by a
 // tenth (c_p), and from 0.7 (the largest of very unequal grains) to 1.5 (c_F).
 //
-// Stiffer contacts only shorten the time step: bodies of 300 and 1000 settled grains
-// broke as many bonds, within their scatter, with c_k from 10 to 100, and with 760 most
-// loads did not come to rest.
+// c_k is that of dem/stiff_contacts.h.
 //
 // Numbers are rounded to two digits: c_p and c_F are not known better. The Bond numbers
 // are those of dem-replay/weight.c with these estimates in place of forces and suction,
 // and without the weight of the liquid.
 #include "suggest.h"
 
+#include "dem/stiff_contacts.h"
 #include "parameters/estimate.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static const double SUCTION_OVER_TENSION = 4.6, FORCE_OVER_SUCTION = 1.4,
-                    GRAIN_OVER_BOND = 50;
+static const double SUCTION_OVER_TENSION = 4.6, FORCE_OVER_SUCTION = 1.4;
 
 double bottom_of(const struct packing_facts *facts)
 {
@@ -68,8 +66,8 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
 
 static double grain_stiffness(const struct material *material, double radius)
 {
-    const double neck = material->radius_fraction * radius;
-    const double bond = material->bond_modulus / (2 * radius) * M_PI * neck * neck;
+    const double bond = stiffness_of_bond(material->bond_modulus / (2 * radius),
+                                          material->radius_fraction, radius);
     return fmin(2 * material->grain_modulus * radius, GRAIN_OVER_BOND * bond);
 }
 

@@ -2,6 +2,7 @@
 #include "warnings.h"
 
 #include "basics/status.h"
+#include "dem/stiff_contacts.h"
 #include "geometry/porosity.h"
 
 #include <math.h>
@@ -29,23 +30,23 @@ static void warn_if_restless(const struct load *load,
                    : ", or use engine=quasi-static, which finds equilibria");
 }
 
-// Where contacts are so much stiffer than bonds that they make the time step short
-// beside the motion of the body (docs/your-grains.md).
+// Where contacts are so much stiffer than bonds that they keep the body from rest.
 static void warn_if_stiff(const struct packing *packing, const struct load *load,
                           const struct replay_settings *settings,
                           const struct response *response)
 {
-    static const double much = 100, enough = 50; // grains over bonds
-    const double neck = settings->bond.radius_fraction * mean_radius(packing);
-    const double bond = settings->bond.normal_stiffness * M_PI * neck * neck;
+    const double bond =
+        stiffness_of_bond(settings->bond.normal_stiffness,
+                          settings->bond.radius_fraction, mean_radius(packing));
     const double ratio = settings->material.normal_stiffness / bond;
     if (packing->n_bond > 0 && settings->bond.kind == DEM_PARALLEL_BOND &&
         settings->engine == ENGINE_EXPLICIT &&
-        response->n_unsettled > load->n_time / 2 && ratio > much && isfinite(ratio))
+        response->n_unsettled > load->n_time / 2 && ratio > STIFF_GRAIN_OVER_BOND &&
+        isfinite(ratio))
         report("grains are %.0f times as stiff as bonds: with normal_stiffness and "
                "shear_stiffness of %.2g N/m they come to rest in far fewer time steps "
                "(docs/your-grains.md)",
-               ratio, enough * bond);
+               ratio, GRAIN_OVER_BOND * bond);
 }
 
 // Grains that have moved by more than the largest radius, at any snapshot, and the one
