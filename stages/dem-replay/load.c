@@ -22,11 +22,19 @@ void take_forces(struct run *run)
     memcpy(run->force, force, (size_t)run->packing->n_particle * sizeof *run->force);
 }
 
-const double *dryness_at(const struct run *run, int row)
+// Of the grains (n_particle); NULL: not known, or before the load (ROW -1).
+static const double *dryness_at(const struct run *run, int row)
 {
     const struct load *load = run->load;
     if (row < 0) return NULL;
     if (load->drained)
         return load->drained + (size_t)row * (size_t)run->packing->n_particle;
     return load->dryness ? load->dryness(load->source, row) : NULL;
+}
+
+void shrinkage_by_law(const struct run *run, int row, double *strain)
+{
+    find_shrinkage(&run->settings->shrinkage, run->packing, row,
+                   row < 0 ? 1 : run->load->saturation[row], dryness_at(run, row),
+                   strain);
 }

@@ -109,9 +109,7 @@ void find_due(const struct run *run, int row, double *strain)
     if (row < 0 && state->due)
         memcpy(strain, state->due, (size_t)n * sizeof *strain);
     else
-        find_shrinkage(&run->settings->shrinkage, run->packing, row,
-                       row < 0 ? 1 : run->load->saturation[row], dryness_at(run, row),
-                       strain);
+        shrinkage_by_law(run, row, strain);
 }
 
 // Shrinks grains to SHARE of the way from the shrinkage of the row before to that of

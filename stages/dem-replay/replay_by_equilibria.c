@@ -167,8 +167,7 @@ static void shrink(struct run *run)
     if (!run->load->shrinks || row < 0) return;
     const double *before = quasi_static_shrinkage(last(run));
     double *strain = NEW_ARRAY(double, n);
-    find_shrinkage(&run->settings->shrinkage, run->packing, row,
-                   run->load->saturation[row], dryness_at(run, row), strain);
+    shrinkage_by_law(run, row, strain);
     for (int i = 0; i < n; i++)
         strain[i] = fmax(strain[i], before[i]);
     quasi_static_shrink(last(run), strain);

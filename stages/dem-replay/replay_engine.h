@@ -73,6 +73,6 @@ const struct replay_engine *replay_engine(const struct replay_settings *settings
 // it. A copy: what is taken off does not change the load. O(n_particle).
 void take_forces(struct run *run);
 
-// The dryness of the grains (n_particle) at ROW of the load; NULL: not known, or before
-// the load (ROW -1). That of the row before stays valid.
-const double *dryness_at(const struct run *run, int row);
+// The STRAIN of each grain (n_particle) by the law of shrinkage, at ROW of the load or,
+// -1, before it.
+void shrinkage_by_law(const struct run *run, int row, double *strain);
