@@ -94,6 +94,12 @@ static void record_changes(struct run *run)
     run->n_ended = 0;
 }
 
+static void record_step(struct run *run)
+{
+    record_changes(run);
+    record_state(run);
+}
+
 static void note_refills(struct run *run, double time)
 {
     const struct occupancy *occupancy = &run->occupancy;
@@ -126,19 +132,14 @@ static void empty_throats(struct run *run)
 void carry_out_losses(struct run *run)
 {
     const double duration = fmin(time_to_first(run), time_to_stop(run));
-    if (last_step_but_one_is_due(run, rate_now(run) * duration)) {
-        record_changes(run);
-        record_state(run);
-    }
+    if (last_step_but_one_is_due(run, rate_now(run) * duration)) record_step(run);
     advance(run, duration);
     empty_throats(run);
 }
 
 void record_losses(struct run *run)
 {
-    if (!step_is_due(run)) return;
-    record_changes(run);
-    record_state(run);
+    if (step_is_due(run)) record_step(run);
 }
 
 static void keep_pressures_once(struct run *run)

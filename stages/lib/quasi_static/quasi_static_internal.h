@@ -69,8 +69,7 @@ struct quasi_static {
     struct displacement *residual;     // (n) load - dashpots - B^T response
     struct displacement *previous;     // (n) u of the last equilibrium or step in time
     double (*last_increment)[COMPONENTS]; // (n_pair) of the deformation, up to there
-    double
-        *shrinkage; // (n) strain of each grain since the start; NULL: nothing shrinks
+    double *shrinkage; // (n) strain since the start; NULL: nothing shrinks
     // Loads.
     const struct vector *force;         // (n) N, from outside
     struct displacement *load;          // (n) of it what counts

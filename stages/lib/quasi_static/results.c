@@ -149,8 +149,7 @@ void quasi_static_reaction(const struct quasi_static *qs, struct vector about,
 void quasi_static_stress(const struct quasi_static *qs, double stress[3][3])
 {
     const struct vector edge = subtract(qs->packing->upper, qs->packing->lower);
-    const double unit =
-        qs->stiffness * qs->length * qs->length / (edge.x * edge.y * edge.z);
+    const double unit = qs->stiffness * qs->length * qs->length / box_volume(edge);
     for (int k = 0; k < 9; k++)
         stress[k / 3][k % 3] = 0;
     for (int j = 0; j < qs->n_pair; j++) {

@@ -4,7 +4,6 @@
 # and the engine of time steps for irregular grains.
 import json
 import math
-import shutil
 import signal
 import subprocess
 import sys
@@ -41,8 +40,7 @@ def bar(at, count, apart, name):
 
 
 def replay(at, packing, *settings, scene=None):
-    run("dem-replay", "-q", "-p", scene or at("layer.json"), *sets(*settings), at(packing), "-o", at("r.h5"))
-    shutil.move(at("r.h5"), at("response.h5"))
+    run("dem-replay", "-q", "-p", scene or at("layer.json"), *sets(*settings), at(packing), "-o", at("response.h5"))
     return h5py.File(at("response.h5"))
 
 
