@@ -187,11 +187,15 @@ static enum status check_course(const struct drying_conditions *conditions,
         return refuse(reason, STATUS_BAD_DATA,
                       "vapour_step: must be from 0 to 0.5, is %g",
                       conditions->vapour_step);
-    if (conditions->vapour_step > 0 &&
-        (conditions->kelvin || conditions->liquid == LIQUID_VISCOUS))
+    if (conditions->vapour_step > 0 && conditions->kelvin)
         return refuse(reason, STATUS_BAD_DATA,
-                      "vapour_step: must be 0 where liquid is viscous or menisci are "
-                      "curved (kelvin), is %g",
+                      "vapour_step: must be 0 where menisci are curved (kelvin), is %g",
+                      conditions->vapour_step);
+    if (conditions->vapour_step > 0 && conditions->liquid == LIQUID_VISCOUS &&
+        !(conditions->flow_step > 0))
+        return refuse(reason, STATUS_BAD_DATA,
+                      "vapour_step: must be 0 where the flow of viscous liquid is "
+                      "found at each event (flow_step = 0), is %g",
                       conditions->vapour_step);
     if (!(conditions->step_interval >= 0 && conditions->step_interval <= 1))
         return refuse(reason, STATUS_BAD_DATA,

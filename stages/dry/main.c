@@ -230,7 +230,7 @@ static int estimate(struct invocation *invocation,
     body.changes = recorded_changes(&body, conditions->step_interval);
     struct cost cost =
         cost_of_drying(&body, conditions->kelvin, !(conditions->vapour_tolerance > 0),
-                       vapour_step(parameters, body.face));
+                       vapour_step(parameters, body.face, body.throats));
     if (parameters->liquid == LIQUID_VISCOUS)
         cost = with_viscous_flow(cost, &body, flow_step(parameters, body.throats) > 0);
     cost =

@@ -158,8 +158,8 @@ const struct parameter dry_table[] = {
          "largest sum of the errors of evaporation, over the rate, until the vapour "
          "is found again in all of the gas (until then it changes only near nodes "
          "that dry); 0: found at each event; null: 0 up to 6000 nodes on the open "
-         "walls, 0.2 above, 0.1 with rings=films, but 0 with kelvin, viscous liquid or "
-         "a vapour_tolerance"},
+         "walls, 0.2 above, 0.1 with rings=films, but 0 with kelvin, flow_step=0 in "
+         "viscous liquid, or a vapour_tolerance"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),
      .text = "fall of the saturation from one recorded step to the next; 0: every "
@@ -245,12 +245,14 @@ double flow_step(const struct dry_parameters *parameters, double throats)
     return !at_each && throats > MAX_THROATS_BY_EACH_FLOW ? FLOW_STEPS : 0;
 }
 
-double vapour_step(const struct dry_parameters *parameters, double open_nodes)
+double vapour_step(const struct dry_parameters *parameters, double open_nodes,
+                   double throats)
 {
     const struct drying_conditions *conditions = &parameters->conditions;
     if (!isnan(conditions->vapour_step)) return conditions->vapour_step;
-    const bool at_each = conditions->kelvin || parameters->liquid == LIQUID_VISCOUS ||
-                         conditions->vapour_tolerance > 0;
+    const bool at_each =
+        conditions->kelvin || conditions->vapour_tolerance > 0 ||
+        (parameters->liquid == LIQUID_VISCOUS && flow_step(parameters, throats) == 0);
     const double step = at_each ? 0 : default_vapour_step(open_nodes);
     return parameters->rings == RINGS_FILMS ? step / 2 : step;
 }
@@ -291,6 +293,7 @@ enum status complete_conditions(struct dry_parameters *parameters,
     conditions->films.step = film_step(parameters, count_throats(network));
     conditions->flow_step = flow_step(parameters, count_throats(network));
     conditions->vapour_step =
-        vapour_step(parameters, count_open_nodes(network, parameters->open_walls));
+        vapour_step(parameters, count_open_nodes(network, parameters->open_walls),
+                    count_throats(network));
     return STATUS_OK;
 }

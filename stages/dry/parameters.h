@@ -49,4 +49,5 @@ double film_step(const struct dry_parameters *parameters, double throats);
 double flow_step(const struct dry_parameters *parameters, double throats);
 
 // The same for vapour_step, with so many nodes on the open walls.
-double vapour_step(const struct dry_parameters *parameters, double open_nodes);
+double vapour_step(const struct dry_parameters *parameters, double open_nodes,
+                   double throats);

@@ -271,6 +271,9 @@ with scratch() as folder:
         in_pieces(f"dry, {liquid} liquid, irregular body", [*dry, "--set", f"liquid={liquid}", irregular])
     in_pieces("dry with a tolerance", [*dry, "--set", "vapour_tolerance=1e-6", irregular])
     in_pieces("dry, vapour that is kept", [*dry, "--set", "vapour_step=0.1", irregular])
+    viscous = [*dry, "--set", "liquid=viscous", "--set", "viscosity=1e-3", irregular]
+    in_pieces("dry, viscous liquid whose flow is kept", viscous)
+    in_pieces("dry, viscous liquid, flow and vapour that are kept", [*viscous, "--set", "vapour_step=0.1"])
     beads = make_irregular(folder, "beads", 1500, "[11e-6,11e-6,11e-6]", "soft_spheres")
     for rings, liquid in ("isolated", "inviscid"), ("isolated", "immobile"), ("joined", "inviscid"), ("films", "inviscid"):
         in_pieces(f"dry, {rings} rings, {liquid} liquid", [*dry, "--set", f"rings={rings}", "--set", f"liquid={liquid}", beads])

@@ -29,7 +29,7 @@ enum status cluster_flow_solve(struct liquid_flow *flow,
                                struct cluster_problem *problem, struct reason *reason)
 {
     struct flow_solver *solver = flow->solver;
-    const double tolerance = flow_tolerance(flow);
+    const double tolerance = fmax(flow_tolerance(flow), 2 * problem->target);
     double error = INFINITY;
     list_ends(flow, problem);
     struct cluster_laplacian *graph = find_graph(flow, problem);
@@ -44,6 +44,6 @@ enum status cluster_flow_solve(struct liquid_flow *flow,
                       "the liquid's balance closes to %.3g of its largest flow only, "
                       "needed is %g (%d unknowns)",
                       error, tolerance, solver->n_node);
-    flow->residual = fmax(flow->residual, error);
+    problem->error = error;
     return STATUS_OK;
 }

@@ -169,7 +169,7 @@ double solve_cluster_cholesky(struct liquid_flow *flow, struct cluster_problem *
     change_reference(flow, problem);
     set_boundary_conditions(flow, problem, graph);
     double error = graph_error(flow, problem, graph);
-    const double target = flow_target(flow);
+    const double target = problem->target;
     for (int k = 0; k < REFINEMENTS && !(error <= target); k++) {
         const bool good = cluster_laplacian_correct(graph, target * problem->flow);
         error = graph_error(flow, problem, graph);

@@ -204,11 +204,13 @@ static bool follow(struct cluster_laplacian *graph)
     return true;
 }
 
-// What is left, and the steps that it took, tell whether the factor is still good.
-static void judge_factor(struct cluster_laplacian *graph, int steps, double tolerance)
+// What is left, and the steps that it took from a residual of SIZE, tell whether the
+// factor is still good.
+static void judge_factor(struct cluster_laplacian *graph, int steps, double size,
+                         double tolerance)
 {
     if (graph->rough)
-        rough_factor_took(graph->rough, steps);
+        rough_factor_took(graph->rough, steps, fmax(0, log10(size / tolerance)));
     else if (!(sqrt(sum_of_products(graph->residual, graph->residual, graph->n)) <=
                tolerance))
         updated_cholesky_forget(graph->factor);
@@ -238,7 +240,7 @@ bool cluster_laplacian_correct(struct cluster_laplacian *graph, double tolerance
     const int steps =
         conjugate_gradients(&problem, graph->residual, correction, tolerance / scale,
                             graph->rough ? MAX_ROUGH_STEPS : MAX_STEPS);
-    judge_factor(graph, steps, tolerance);
+    judge_factor(graph, steps, scale, tolerance);
     for (int i = 0; i < graph->n; i++)
         compensated_add(&graph->potential[i], scale * correction[i]);
     return true;

@@ -71,6 +71,7 @@ struct cluster_problem {
     int n_meniscus, n_partial; // menisci; those of them in throats partly empty
     double margin;             // entry potential of the reference above the next one's
     double flow;               // scale of the flows in it
+    double error, target;      // of the balances, relative to that: the largest
 };
 
 // Keeps OCCUPANCY, which must live as long. The caller frees it with flow_solver_free.

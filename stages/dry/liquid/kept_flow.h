@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The losses of a cluster between two times at which its flow is found [K 3.10]. K
-// finds the flow after each throat; here potentials and inflows stay for a while
-// (flow->step), and the losses follow what has changed. For viscous.c only.
+// The flow of a cluster between two times at which it is found [K 3.10]. K finds the
+// flow after each throat; here potentials stay for a while (flow->step), and the losses
+// follow what has changed. For viscous.c, and for viscous_events.c, which goes from
+// event to event.
 #pragma once
 
 #include "flow_solver.h"
@@ -10,8 +11,19 @@
 void kept_flow_note(const struct liquid_flow *flow,
                     const struct cluster_problem *problem);
 
-// Whether that flow may serve on. If so, flow->moving and the solver's inflow become
-// such that the losses of its menisci, evaporation - inflow, add up to
-// problem->evaporation. If not, moving has stayed a guess that find_menisci may start
-// from. O(menisci of the cluster).
-bool kept_flow_goes_on(struct liquid_flow *flow, const struct cluster_problem *problem);
+// Whether CLUSTER has a flow that is kept.
+bool kept_flow_is_known(const struct liquid_flow *flow, int cluster);
+
+// Whether it may serve on while the cluster evaporates EVAPORATION and its losses are
+// SCALE times what they were as it was found.
+bool kept_flow_may_serve(const struct liquid_flow *flow, int cluster,
+                         double evaporation, double scale);
+
+// What flows to the meniscus of THROAT if that moves.
+double kept_flow_inflow(const struct liquid_flow *flow, int cluster, int throat);
+
+// THROAT is full again: its meniscus stops.
+void kept_flow_stop(struct liquid_flow *flow, int cluster, int throat);
+
+// Throats that evaporated EVAPORATION have left CLUSTER.
+void kept_flow_take(struct liquid_flow *flow, int cluster, double evaporation);

@@ -6,18 +6,15 @@
 #include "basics/memory.h"
 #include "elimination/approximate_cholesky.h"
 
-#include <limits.h>
 #include <stdlib.h>
 
-// A factor is made again when steps with it are SLOWER times as many as at first, and a
-// FEW more. To make one takes as long as some forty steps.
-enum { FEW = 5, ARRAYS = 4 };
-static const double SLOWER = 1.3;
+// To make a factor takes as long as so many steps.
+enum { STEPS_OF_FACTOR = 40, ARRAYS = 4 };
 
 struct rough_factor {
     struct approximate_cholesky *factor; // NULL: to be made
-    int fewest;                          // steps that it has taken
-    double *array[ARRAYS];               // (n)
+    double steps, decades; // with it, so far; steps count what it took to make
+    double *array[ARRAYS]; // (n)
 };
 
 struct rough_factor *rough_factor_create(int n)
@@ -69,7 +66,8 @@ void rough_factor_follow(struct rough_factor *rough,
     if (rough->factor) return;
     struct conductance_matrix matrix = matrix_of(graph);
     rough->factor = approximate_cholesky_create(&matrix);
-    rough->fewest = INT_MAX;
+    rough->steps = STEPS_OF_FACTOR;
+    rough->decades = 0;
     conductance_matrix_free(&matrix);
 }
 
@@ -78,10 +76,11 @@ void rough_factor_apply(const struct rough_factor *rough, const double *b, doubl
     approximate_cholesky_apply(rough->factor, b, z);
 }
 
-void rough_factor_took(struct rough_factor *rough, int steps)
+void rough_factor_took(struct rough_factor *rough, int steps, double decades)
 {
-    if (steps < rough->fewest) rough->fewest = steps;
-    if (steps > SLOWER * rough->fewest + FEW) forget(rough);
+    rough->steps += steps;
+    rough->decades += decades;
+    if (steps * rough->decades > rough->steps * decades) forget(rough);
 }
 
 double **rough_factor_scratch(struct rough_factor *rough)

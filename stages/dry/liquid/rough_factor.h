@@ -20,9 +20,10 @@ void rough_factor_follow(struct rough_factor *rough,
 // Solves for Z (n) with the right-hand side B (n), of norm 1 or so, as it holds floats.
 void rough_factor_apply(const struct rough_factor *rough, const double *b, double *z);
 
-// Tells it how many STEPS conjugate gradients took. Where these are many more than at
-// first, the graph has changed: the next _follow makes another factor.
-void rough_factor_took(struct rough_factor *rough, int steps);
+// Tells it how many STEPS conjugate gradients took for so many DECADES of the residual.
+// When a decade takes more than they have on average, the time to make the factor
+// included, the graph has changed: the next _follow makes another.
+void rough_factor_took(struct rough_factor *rough, int steps, double decades);
 
 // Four arrays (n) that a solver may use between calls.
 double **rough_factor_scratch(struct rough_factor *rough);

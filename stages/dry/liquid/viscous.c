@@ -10,8 +10,7 @@
 // pressures only, so it ends. loss = evaporation - inflow, negative where a throat
 // refills. Many clusters need no solution: if all that evaporates, through all throats
 // in series, drops the potential by less than the margin between the two easiest
-// menisci, only the easiest one moves (only_one_moves). Others keep the flow found last
-// for a while (kept_flow.h).
+// menisci, only the easiest one moves (only_one_moves).
 #include "viscous.h"
 
 #include "basics/memory.h"
@@ -29,7 +28,10 @@ enum { MAX_ROUNDS = 200 };
 // In the first rounds only menisci begin to move whose shortfall is at least this part
 // of the largest; after that all that must, as when a viscous cluster begins to dry.
 enum { SELECTIVE_ROUNDS = 20 };
-static const double BEGIN_FRACTION = 0.9;
+static const double BEGIN_FRACTION = 0.5;
+
+// Where a flow is kept, rounds that change menisci need not find it better.
+static const double ROUGH_TARGET = 1e-3;
 
 struct liquid_flow liquid_flow_init(const struct occupancy *occupancy, double length,
                                     double step, struct menisci menisci)
@@ -114,7 +116,7 @@ static bool must_stop(const struct liquid_flow *flow,
 {
     return is_full(flow, throat) &&
            flow->solver->evaporation[throat] - flow->solver->inflow[throat] <
-               -flow_target(flow) * problem->flow;
+               -problem->target * problem->flow;
 }
 
 // Initial guess: menisci that moved before, those in throats partly empty, and if there
@@ -166,12 +168,18 @@ static enum status find_menisci(struct liquid_flow *flow,
                                 struct cluster_problem *problem, struct reason *reason)
 {
     start_menisci(flow, problem);
+    problem->target = fmax(ROUGH_TARGET * (flow->step > 0), flow_target(flow));
     for (int round = 0; round < MAX_ROUNDS; round++) {
         const enum status status = cluster_flow_solve(flow, problem, reason);
         if (status) return status;
         flow->rounds++;
         const double begin_fraction = round < SELECTIVE_ROUNDS ? BEGIN_FRACTION : 0;
-        if (revise_menisci(flow, problem, begin_fraction) == 0) return STATUS_OK;
+        if (revise_menisci(flow, problem, begin_fraction) > 0) continue;
+        if (fmin(problem->target, problem->error) <= flow_target(flow)) {
+            flow->residual = fmax(flow->residual, problem->error);
+            return STATUS_OK;
+        }
+        problem->target = flow_target(flow);
     }
     return refuse(reason, STATUS_NOT_CONVERGED,
                   "no consistent menisci after %d rounds in a cluster of %d throats",
@@ -332,6 +340,7 @@ static enum status find_given(struct liquid_flow *flow, struct cluster_problem *
     }
     const enum status status = cluster_flow_solve(flow, problem, reason);
     if (status) return status;
+    flow->residual = fmax(flow->residual, problem->error);
     keep_menisci(flow, problem);
     collect_losses(flow, problem, loss, n_loss);
     if (flow->wants_pressures) write_pressures(flow, problem, false);
@@ -357,10 +366,6 @@ static enum status find_losses(struct liquid_flow *flow,
         add_loss(loss, n_loss, problem->reference, problem->evaporation);
         return STATUS_OK;
     }
-    if (!flow->wants_pressures && kept_flow_goes_on(flow, problem)) {
-        collect_losses(flow, problem, loss, n_loss);
-        return STATUS_OK;
-    }
     const enum status status = find_menisci(flow, problem, reason);
     if (status) return status;
     if (flow->step > 0) kept_flow_note(flow, problem);
@@ -368,6 +373,14 @@ static enum status find_losses(struct liquid_flow *flow,
     if (flow->wants_pressures) write_pressures(flow, problem, false);
     flow->solutions++;
     return STATUS_OK;
+}
+
+static struct cluster_problem problem_of(const struct liquid_flow *flow, int cluster)
+{
+    return (struct cluster_problem){.cluster = cluster,
+                                    .n_throat =
+                                        flow->solver->occupancy->clusters.size[cluster],
+                                    .target = flow_target(flow)};
 }
 
 enum status liquid_flow_find(struct liquid_flow *flow,
@@ -381,12 +394,18 @@ enum status liquid_flow_find(struct liquid_flow *flow,
         flow->pressure[i] = 0;
     enum status status = STATUS_OK;
     for (int c = 0; !status && c < occupancy->clusters.n_id; c++) {
-        struct cluster_problem problem = {.cluster = c,
-                                          .n_throat = occupancy->clusters.size[c]};
+        struct cluster_problem problem = problem_of(flow, c);
         if (problem.n_throat > 0)
             status = find_losses(flow, &problem, loss, n_loss, reason);
     }
     return status;
+}
+
+enum status liquid_flow_find_in(struct liquid_flow *flow, int cluster,
+                                struct loss *loss, int *n_loss, struct reason *reason)
+{
+    struct cluster_problem problem = problem_of(flow, cluster);
+    return find_losses(flow, &problem, loss, n_loss, reason);
 }
 
 void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupancy)

@@ -65,6 +65,11 @@ enum status liquid_flow_find(struct liquid_flow *flow,
                              const double *evaporation, struct loss *loss, int *n_loss,
                              struct reason *reason);
 
+// The same for the throats of one CLUSTER, with the evaporation given last, which is
+// kept and may have changed: its flow is found anew.
+enum status liquid_flow_find_in(struct liquid_flow *flow, int cluster,
+                                struct loss *loss, int *n_loss, struct reason *reason);
+
 // Forgets what is remembered only for speed: the next call starts from the menisci
 // alone, as a run does that continues from a checkpoint.
 void liquid_flow_forget(struct liquid_flow *flow, const struct occupancy *occupancy);

@@ -44,6 +44,7 @@ static void begin(struct run *run)
 static enum status take_step(struct run *run, struct reason *reason)
 {
     if (run->conditions->kelvin) return drying_step_kelvin(run, reason);
+    if (run->events) return drying_step_kept_flow(run, reason);
     if (run->conditions->liquid == LIQUID_VISCOUS)
         return drying_step_viscous(run, reason);
     return drying_step_inviscid(run, reason);
@@ -124,6 +125,8 @@ static void prepare(struct run *run)
     if (has_kelvin) run->kelvin = kelvin_menisci_init(&run->occupancy, run->conditions);
     if (is_viscous && has_kelvin)
         run->coupling = kelvin_viscous_init(&run->kelvin, &run->flow);
+    if (is_viscous && run->conditions->flow_step > 0)
+        run->events = viscous_events_create(&run->occupancy, &run->flow);
     if (is_viscous || has_kelvin)
         run->losses = losses_init(network->n_throat);
     else
@@ -222,6 +225,7 @@ static enum status begin_run(struct run *run, const struct keeper *keeper,
 static void free_run(struct run *run)
 {
     liquid_flow_free(&run->flow);
+    viscous_events_free(run->events);
     losses_free(&run->losses);
     kelvin_viscous_free(&run->coupling);
     kelvin_menisci_free(&run->kelvin);

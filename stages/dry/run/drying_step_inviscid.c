@@ -47,14 +47,6 @@ static void record_step(struct run *run)
     run->imbalance = fmax(run->imbalance, fabs(emptying_times_imbalance(&run->times)));
 }
 
-static enum status refuse_vapour(const struct run *run, struct reason *reason)
-{
-    return refuse(reason, STATUS_NOT_CONVERGED,
-                  "the vapour was not found to vapour_step = %g of the drying rate at "
-                  "saturation %g; vapour_step=0 finds it without iterations",
-                  run->conditions->vapour_step, network_saturation(run));
-}
-
 static enum status refuse_films(const struct run *run, struct reason *reason)
 {
     return refuse(reason, STATUS_NOT_CONVERGED,
@@ -86,8 +78,8 @@ enum status drying_step_inviscid(struct run *run, struct reason *reason)
         run->ended[run->n_ended++] = times->ended[k];
     }
     emptying_times_empty_ended(times);
-    if (run->occupancy.vapour.kept && run->occupancy.vapour.kept->failed)
-        return refuse_vapour(run, reason);
+    const enum status status = check_vapour(run, reason);
+    if (status) return status;
     if (times->films && times->films->failed) return refuse_films(run, reason);
     note_breakthrough(run);
     if (step_is_due(run)) record_step(run);

@@ -12,7 +12,6 @@
 
 #include "basics/memory.h"
 
-#include <float.h>
 #include <math.h>
 
 // Throats that have this part of their volume left, or less, when another empties would
@@ -53,16 +52,6 @@ static void lose(struct occupancy *occupancy, int throat, double amount)
         *liquid = (struct compensated){0};
         compensated_add(&occupancy->total_liquid, -before);
     }
-}
-
-// Time until the saturation is just below stop_saturation, by rounding alone, so that
-// truncate_history has next to nothing to cut and what is found there is of the end.
-static double time_to_stop(const struct run *run)
-{
-    const double stop = run->conditions->stop_saturation;
-    if (stop == 0) return INFINITY;
-    const double excess = network_saturation(run) - stop + 4 * DBL_EPSILON;
-    return excess * run->occupancy.capacity / rate_now(run);
 }
 
 // Lets all throats lose for DURATION, and notes which have changed.
@@ -131,7 +120,7 @@ static void empty_throats(struct run *run)
 
 void carry_out_losses(struct run *run)
 {
-    const double duration = fmin(time_to_first(run), time_to_stop(run));
+    const double duration = fmin(time_to_first(run), left_to_stop(run) / rate_now(run));
     if (last_step_but_one_is_due(run, rate_now(run) * duration)) record_step(run);
     advance(run, duration);
     empty_throats(run);
@@ -163,6 +152,7 @@ void keep_pressures(struct run *run)
 enum status keep_last_pressures(struct run *run, struct reason *reason)
 {
     if (!snapshot_is_due(run) || run->occupancy.n_liquid == 0) return STATUS_OK;
+    if (run->events) viscous_events_forget(run->events);
     run->flow.wants_pressures = true;
     const enum status status =
         losses_find(&run->losses, &run->occupancy, &run->flow, reason);

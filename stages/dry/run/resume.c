@@ -46,6 +46,7 @@ static void flow_state(struct run *run, struct checkpoint_stream *stream)
 {
     struct liquid_flow *flow = &run->flow;
     stream_flags(stream, flow->moving, run->occupancy.network->n_throat);
+    if (run->events) stream_numbers(stream, &run->events->pace, 1);
     stream_numbers(stream, &flow->residual, 1);
     stream_long(stream, &flow->rounds);
     stream_long(stream, &flow->solutions);
@@ -106,6 +107,14 @@ static void run_state(struct run *run, struct checkpoint_stream *stream)
 
 static const char streams[] = "drying"; // prefix of the arrays in the artifact
 
+// Whether this is a moment at which flows are forgotten: where vapour is kept, as it
+// has been found with the last use of a factor.
+static bool is_cut(const struct run *run)
+{
+    if (run->events && run->occupancy.vapour.kept) return run->events->found_vapour;
+    return run->n_flow_step % steps_between_cuts(run) == 0;
+}
+
 // Runs with timers forget nothing and can be kept after any step (n_flow_step stays 0),
 // but those with films or kept vapour only where these have forgotten.
 void keep_if_due(struct run *run, const struct keeper *keeper)
@@ -114,7 +123,8 @@ void keep_if_due(struct run *run, const struct keeper *keeper)
     if (films && !film_supply_may_be_kept(films)) return;
     const struct kept_vapour *vapour = run->occupancy.vapour.kept;
     if (vapour && !kept_vapour_may_be_kept(vapour)) return;
-    if (run->n_flow_step % steps_between_cuts(run) != 0) return;
+    if (!is_cut(run)) return;
+    if (run->events) viscous_events_forget(run->events);
     if (run->conditions->liquid == LIQUID_VISCOUS)
         liquid_flow_forget(&run->flow, &run->occupancy);
     if (run->conditions->kelvin) kelvin_menisci_forget(&run->kelvin);

@@ -16,6 +16,7 @@
 
 #include "basics/sorted.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -89,6 +90,15 @@ bool last_step_but_one_is_due(struct run *run, double loss)
     return true;
 }
 
+// So that truncate_history has next to nothing to cut, and what is found there is of
+// the end.
+double left_to_stop(const struct run *run)
+{
+    const double stop = run->conditions->stop_saturation;
+    if (stop == 0) return INFINITY;
+    return (network_saturation(run) - stop + 4 * DBL_EPSILON) * run->occupancy.capacity;
+}
+
 void sort_ended(struct run *run)
 {
     qsort(run->ended, (size_t)run->n_ended, sizeof *run->ended, rising_ints);
@@ -123,4 +133,14 @@ enum status refuse_standstill(const struct run *run, struct reason *reason)
                   "nothing evaporates any more with %d throats still wet (rates too "
                   "small for the arithmetic)",
                   run->occupancy.n_liquid);
+}
+
+enum status check_vapour(const struct run *run, struct reason *reason)
+{
+    const struct kept_vapour *kept = run->occupancy.vapour.kept;
+    if (!kept || !kept->failed) return STATUS_OK;
+    return refuse(reason, STATUS_NOT_CONVERGED,
+                  "the vapour was not found to vapour_step = %g of the drying rate at "
+                  "saturation %g; vapour_step=0 finds it without iterations",
+                  run->conditions->vapour_step, network_saturation(run));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The state of a run, and what its three kinds of step share. For the files of this
+// The state of a run, and what its kinds of step share. For the files of this
 // folder only; others call dry_network (drying.h). All is scaled (struct drying_scale)
 // but the history.
 //
@@ -16,6 +16,7 @@
 #include "dry/kelvin/kelvin_viscous.h"
 #include "dry/liquid/losses.h"
 #include "dry/liquid/occupancy.h"
+#include "dry/liquid/viscous_events.h"
 #include "history.h"
 
 // It owns its parts and arrays; drying.c makes and frees them. Parts that the kind of
@@ -31,6 +32,7 @@ struct run {
     struct kelvin_menisci kelvin;   // Kelvin effect
     struct kelvin_viscous coupling; // both
     struct losses losses;           // viscous liquid or Kelvin effect
+    struct viscous_events *events;  // viscous liquid whose flow is kept; else NULL
     int n_idle;                     // viscous: steps since a throat has emptied
     int64_t n_flow_step;            // viscous, curved: steps so far, recorded or not
     struct recorder recorder;
@@ -61,6 +63,10 @@ double rate_now(const struct run *run);
 // Whether the saturation has reached the next snapshot of the pressures of viscous
 // liquid.
 bool snapshot_is_due(const struct run *run);
+
+// What may be lost, scaled, until the saturation is just below stop_saturation, by
+// rounding alone.
+double left_to_stop(const struct run *run);
 
 // Whether this moment is to be recorded, by step_interval. If events have been skipped,
 // the rate of the last recorded step becomes the mean until now.
@@ -105,6 +111,9 @@ void record_losses(struct run *run);
 // STATUS_NOT_CONVERGED with a message: liquid is left, but no throat loses any.
 enum status refuse_standstill(const struct run *run, struct reason *reason);
 
+// STATUS_NOT_CONVERGED with a message: kept vapour was not found.
+enum status check_vapour(const struct run *run, struct reason *reason);
+
 // Counts steps in which no throat has emptied (IDLE). STATUS_NOT_CONVERGED after so
 // many that throats must be refilling each other endlessly.
 enum status note_idle(struct run *run, bool idle, struct reason *reason);
@@ -115,4 +124,5 @@ enum status note_idle(struct run *run, bool idle, struct reason *reason);
 // parts in agreement, so that a state may be kept there.
 enum status drying_step_inviscid(struct run *run, struct reason *reason);
 enum status drying_step_viscous(struct run *run, struct reason *reason);
+enum status drying_step_kept_flow(struct run *run, struct reason *reason);
 enum status drying_step_kelvin(struct run *run, struct reason *reason);
