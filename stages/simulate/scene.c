@@ -337,7 +337,8 @@ static void set_engine(const struct simulate_parameters *parameters,
 // Bonds and driven groups do not follow a box that is strained. The engine rescales
 // neither of them (dem_rescale): a bond accumulates its load from velocities, of which
 // a rescaling has none. And in a direction that does not repeat the strain would move
-// no wall.
+// no wall. Overlaps at rest with walls are those of the starts, which a rescaling
+// moves.
 static enum status check_strain(const struct simulate_parameters *parameters,
                                 const struct scene *scene, struct reason *reason)
 {
@@ -353,6 +354,10 @@ static enum status check_strain(const struct simulate_parameters *parameters,
             return refuse(reason, STATUS_BAD_DATA,
                           "simulate.box.strain_rate: must be 0 with bonds (bond.kind) "
                           "or driven groups");
+        if (!parameters->prestress && scene->setup.n_wall > 0)
+            return refuse(reason, STATUS_BAD_DATA,
+                          "simulate.prestress: must be true with box.strain_rate and "
+                          "walls");
     }
     return STATUS_OK;
 }

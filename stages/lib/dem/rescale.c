@@ -47,14 +47,18 @@ static void stretch_box(struct dem *dem, const double stretch[3])
     }
 }
 
-// New separations and overlaps of all pairs. Returns what bridges took up as their gaps
-// changed.
-static double place_pairs(struct dem *dem, const double *gap_before, bool grown)
+// New separations and overlaps of all pairs. Overlaps at rest stay so: the new overlap
+// is REACHED_BEFORE, overlap and distance together, less the new distance. Returns what
+// bridges took up as their gaps changed.
+static double place_pairs(struct dem *dem, const double *gap_before,
+                          const double *reached_before, bool grown)
 {
     double taken = 0;
     for (int p = 0; p < dem->pairs.n_pair; p++) {
         const int group = p / PAIRS_IN_GROUP, lane = p % PAIRS_IN_GROUP;
-        set_pair_place(dem, &dem->pairs.group[group], lane);
+        struct pair_group *of = &dem->pairs.group[group];
+        set_pair_place(dem, of, lane);
+        if (reached_before) of->overlap[lane] = reached_before[p] - of->distance[lane];
         if (dem->pairs.laws && grown) set_pair_law(dem, p);
         if (dem->pairs.rolling && grown)
             set_pair_rolling(dem, p, law_of_pair(dem, p).normal_stiffness);
@@ -73,6 +77,17 @@ static double *gaps_now(const struct dem *dem)
     return gap;
 }
 
+// At which distance two grains begin to push: that of their radii, less where they
+// overlapped at rest.
+static double *reaches_now(const struct dem *dem)
+{
+    double *reach = NEW_ARRAY(double, dem->pairs.n_pair);
+    for (int p = 0; p < dem->pairs.n_pair; p++)
+        reach[p] = dem->pairs.group[p / PAIRS_IN_GROUP].overlap[p % PAIRS_IN_GROUP] +
+                   dem->pairs.group[p / PAIRS_IN_GROUP].distance[p % PAIRS_IN_GROUP];
+    return reach;
+}
+
 // How much two grains that do not touch may have approached, half of it each.
 static double approach(const struct dem *dem, const double stretch[3], double growth)
 {
@@ -89,16 +104,18 @@ enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
     if (dem->n_bond > 0 || dem->n_driven > 0 || (wet && grown)) return STATUS_BAD_DATA;
     const double elastic = dem->balance_energy ? elastic_energy(dem) : 0;
     double *gap = dem->balance_energy && wet ? gaps_now(dem) : NULL;
+    double *reach = dem->unstressed ? reaches_now(dem) : NULL;
     move_starts(dem, stretch, growth);
     stretch_box(dem, stretch);
     if (grown) {
         set_masses(dem, NULL);
         set_external(dem);
     }
-    const double taken = place_pairs(dem, gap, grown);
+    const double taken = place_pairs(dem, gap, reach, grown);
     if (grown) set_wall_laws(dem);
     count_approach(dem, approach(dem, stretch, growth));
     free(gap);
+    free(reach);
     if (!dem->balance_energy) return STATUS_OK;
     dem->energy_ledger.bridges += taken;
     dem->energy_ledger.gained += taken + elastic_energy(dem) - elastic;

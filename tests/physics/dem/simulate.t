@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, "tests")
-from tap import BIN, done, ok, run, scratch_paths
+from tap import BIN, done, ok, refused, run, scratch_paths, sets
 
 at = scratch_paths()
 SOFT = {"glass": {"density": 2500, "young_modulus": 1e7, "poisson_ratio": 0.25, "friction": 0.5,
@@ -157,6 +157,18 @@ near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate t
 near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
      "and stresses the lattice by its stiffness")
 ok("work" not in motion["history"], "record.energy=false keeps no balance")
+# Grains that overlap at rest, and a lattice that just touches: the strain presses both alike.
+pressed = []
+for radius in (1e-3, 1.01e-3):
+    sc = packing([[*place[:3], radius] for place in lattice], (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, True))
+    motion = simulate(sc, {"duration": 0.01, "gravity": [0, 0, 0], "box": {"strain_rate": [0, 0, -0.1]},
+                           "law": "linear", "prestress": False, "time_step": 1e-5,
+                           "materials": {"glass": {"normal_stiffness": 1e4, "density": 2500, "friction": 0}}})
+    pressed.append(motion["history/stress"][-1, 2, 2])
+near(pressed[1], pressed[0], 1e-9, "prestress=false: a strain presses grains that overlapped at rest")
+refused("but not beside walls", "simulate.prestress: must be true with box.strain_rate and walls", "simulate", "-q", sc,
+        *sets("duration=0.01", 'materials={"glass":{"young_modulus":1e7}}', "box.strain_rate=[0,0,-0.1]", "prestress=false",
+              'walls={"ball":{"shape":"sphere","radius":1e-6,"outside":true,"point":[0,0,0]}}'), "-o", at("refused"))
 
 
 # Grains that touch nothing move with the box: the velocity that is written says so, and a strain that goes on takes it back.
