@@ -153,7 +153,7 @@ static void strain_box(const struct simulate_parameters *parameters, struct dem 
     double stretch[3];
     for (int axis = 0; axis < 3; axis++)
         stretch[axis] = exp(parameters->strain_rate[axis] * span);
-    dem_rescale(dem, stretch, 1);
+    dem_strain(dem, stretch);
 }
 
 struct vector strain_velocity(const struct simulate_parameters *parameters,

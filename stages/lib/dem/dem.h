@@ -342,6 +342,9 @@ void dem_inertia_ratios(const struct dem *dem, double *ratio);
 // STATUS_OK, or STATUS_BAD_DATA and does nothing with bonds or driven groups, or where
 // grains with liquid grow. O(pairs).
 enum status dem_rescale(struct dem *dem, const double stretch[3], double growth);
+// The same without growth, but the shear springs of contacts between grains feel how
+// the strain moves the grains past each other.
+enum status dem_strain(struct dem *dem, const double stretch[3]);
 
 // Drying shrinkage of every grain (n_particle): the linear strain, below 1, by which it
 // is smaller than at the start; its bonds and contacts follow from the next cycle on
@@ -353,8 +356,8 @@ void dem_shrinkage(const struct dem *dem, double *shrinkage); // (n_particle) as
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is
 // asked for later is finite but has no meaning. O(CYCLES pairs); pairs are sought again
-// only after a grain has moved by half its skin. One call of n cycles and n calls of one
-// give the same bytes.
+// only after a grain has moved by half its skin. One call of n cycles and n calls of
+// one give the same bytes.
 enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason);
 
 // Runs until dem_unbalanced_ratio is below TOLERANCE, which is looked at every 16

@@ -171,6 +171,44 @@ refused("but not beside walls", "simulate.prestress: must be true with box.strai
               'walls={"ball":{"shape":"sphere","radius":1e-6,"outside":true,"point":[0,0,0]}}'), "-o", at("refused"))
 
 
+# A close-packed lattice: shear springs feel the strain of the box as they feel any other motion.
+edge = 2e-3 * math.sqrt(2)
+close = [[(i + x + .1) * edge, (j + y + .1) * edge, (k + z + .1) * edge, 1e-3]
+         for i in range(3) for j in range(3) for k in range(3)
+         for x, y, z in ((0, 0, 0), (.5, .5, 0), (.5, 0, .5), (0, .5, .5))]
+sc = packing(close, (0, 0, 0), (3 * edge,) * 3, (True, True, True))
+motion = simulate(sc, {"duration": 0.01, "gravity": [0, 0, 0], "box": {"strain_rate": [0, 0, -0.01]}, "law": "linear",
+                       "materials": {"glass": {"normal_stiffness": 2e4, "shear_stiffness": 1e4, "density": 2500,
+                                               "friction": 10, "damping_ratio": 0}}})
+strain = np.diag([0, 0, motion["history/box_upper"][-1, 2] / (3 * edge) - 1])
+wanted = np.zeros((3, 3))
+for way in ((1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (0, 1, 1), (0, 1, -1)):
+    n = np.array(way) / math.sqrt(2)
+    apart = 2e-3 * strain @ n
+    along = n * (n @ apart)
+    wanted -= 4 / edge**3 * np.outer(2e-3 * n, 1e4 * along + 5e3 * (apart - along))
+stress = motion["history/stress"][-1]
+ok(np.abs(stress - wanted).max() < 1e-3 * wanted.max(), "a strain shears the contacts of a close-packed lattice", (stress, wanted))
+
+# Grains pressed together and sheared: the box does the work that their stress says.
+wild = np.random.default_rng(3)
+pressed = [[*((np.array([i, j, k]) + .5 + wild.uniform(-.12, .12, 3)) * 2e-3), wild.uniform(.9e-3, 1.2e-3)]
+           for i in range(5) for j in range(5) for k in range(5)]
+hertz = {"gravity": [0, 0, 0], "largest_overlap": 1,
+         "materials": {"glass": {"young_modulus": 5e7, "density": 2500, "friction": 0.5, "restitution": 0.3}}}
+simulate(packing(pressed, (0, 0, 0), (.01, .01, .01), (True, True, True)),
+         {**hertz, "duration": 0.01, "local_damping": 0.3, "write": "packing"})
+shutil.copy(at("motion"), at("rest"))
+motion = simulate(at("rest"), {**hertz, "duration": 0.02, "box": {"strain_rate": [-1, .5, .5]}, "record": {"every": 2e-5}})
+history = motion["history"]
+power = ((history["box_upper"][:] - history["box_lower"][:]).prod(1) *
+         (history["stress"][:, 0, 0] - .5 * history["stress"][:, 1, 1] - .5 * history["stress"][:, 2, 2]))[1:]
+done_by_stress = (0.5 * (power[1:] + power[:-1]) * np.diff(history["time"][1:])).sum()
+near(history["work"][-1] - history["work"][1], done_by_stress, 0.01, "the work of a strained box is that of its stress")
+books = (history["kinetic_energy"][:] + history["elastic_energy"][:] + history["dissipation"][:].sum(1) - history["work"][:])
+ok(abs(books[-1] - books[1]) < 0.01 * done_by_stress, "and is in the books", books[-1] - books[1])
+
+
 # Grains that touch nothing move with the box: the velocity that is written says so, and a strain that goes on takes it back.
 loose = np.array([[1e-3, 2e-3, 3e-3, 2e-4], [5e-3, 5e-3, 6e-3, 2e-4]])
 box = {"gravity": [0, 0, 0], "duration": 0.01}
