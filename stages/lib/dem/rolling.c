@@ -73,10 +73,10 @@ struct rolling_law pair_rolling(const struct dem *dem, int pair)
 void set_wall_rolling(const struct dem *dem, struct wall_pair *pair)
 {
     const int i = pair->particle, kind = dem->material_of[i];
-    const int other = dem->wall[pair->wall].is.material;
-    pair->rolling =
-        rolling_law(dem, kind, other > 0 ? other : kind, dem->place[i].radius,
-                    inertia_about_contact(dem, i), pair->law.normal_stiffness);
+    const struct dem_wall *wall = &dem->wall[pair->wall].is;
+    pair->rolling = rolling_law(dem, kind, wall->elastic ? wall->material : kind,
+                                dem->place[i].radius, inertia_about_contact(dem, i),
+                                pair->law.normal_stiffness);
 }
 
 double rolling_energy(const struct rolling_law *law, double stiffness,

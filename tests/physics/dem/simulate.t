@@ -141,6 +141,15 @@ near(motion["history/wall_force"][-1, 1, 2], 4 / 3 * modulus * math.sqrt(1e-3) *
      "an elastic grain between elastic plates pushes as Hertz says")
 near(sunk, 1.0005e-5, 1e-3, "a wall that follows a table of time stops where the table says")
 
+# Of a ball and a floor of two materials the smaller rolling friction counts, whichever comes first by name.
+stops = {"density": 2500, "young_modulus": 1e7, "friction": 0.5, "rolling_friction": 0.05}
+for names in ("ab", "ba"):
+    motion = simulate(packing([0, 0, 1e-3, 1e-3]),
+                      {"duration": 0.1, "materials": dict(zip(names, ({**stops, "rolling_friction": 0}, stops))), "material": names[1],
+                       "walls": {"floor": {"point": [0, 0, 0], "material": names[0]}},
+                       "groups": {"ball": {"grains": [0], "initial": {"velocity": [0.1, 0, 0], "spin": [0, 100, 0]}}}})
+    near(motion["snapshots/velocity"][-1, 0, 0], 0.1, 1e-3, f"a floor that does not resist rolling, {names}")
+
 # Before grains touch, their unbalanced ratio says nothing: they are not at rest.
 motion = simulate(packing([0, 0, 5e-3, 1e-3]),
                   {"duration": 0.02, "gravity": [0, 0, 0], "walls": {"floor": {"point": [0, 0, 0]}},
