@@ -166,8 +166,8 @@ struct vector strain_velocity(const struct simulate_parameters *parameters,
 
 // A driven group turns about its axis at a signed rate. So a factor below 0 turns it
 // back without a new axis.
-void control(const struct simulate_parameters *parameters, const struct scene *scene,
-             double time, struct dem *dem)
+void set_motions(const struct simulate_parameters *parameters,
+                 const struct scene *scene, double time, struct dem *dem)
 {
     for (int w = 0; w < scene->setup.n_wall; w++)
         move_wall(scene, time, dem, w);
@@ -180,5 +180,11 @@ void control(const struct simulate_parameters *parameters, const struct scene *s
         dem_set_group_motion(dem, driven, scale(factor, as_vector(row->velocity)),
                              factor * norm(as_vector(row->spin)));
     }
+}
+
+void control(const struct simulate_parameters *parameters, const struct scene *scene,
+             double time, struct dem *dem)
+{
+    set_motions(parameters, scene, time, dem);
     if (strains(parameters)) strain_box(parameters, dem);
 }

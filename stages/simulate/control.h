@@ -24,6 +24,9 @@ double mean_factor(const struct time_table *table, double time, double span);
 // refused all scenes that DEM would refuse to strain.
 void control(const struct simulate_parameters *parameters, const struct scene *scene,
              double time, struct dem *dem);
+// The same without the strain.
+void set_motions(const struct simulate_parameters *parameters,
+                 const struct scene *scene, double time, struct dem *dem);
 
 // The velocity, m/s, of what moves at PLACE with the strain of a box with the lower
 // corner LOWER. The engine knows velocities without it.

@@ -9,6 +9,8 @@
 //     velocities, spins, momentum      t - dt/2, as leapfrog has them [K 4.1-4.6]
 //     forces, stress, contacts         the last cycle, so positions at t - dt
 //
+// At the start, before any cycle, forces are those of the start (dem_find_forces).
+//
 // Stress is that of the census times box / room: the engine divides by its box, which
 // does not follow walls that close in.
 //

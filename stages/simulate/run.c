@@ -353,6 +353,15 @@ static enum status begin(struct run *run, const struct vector *force, int thread
     return check_walls(run, reason);
 }
 
+// Of walls and groups that move as they will in the first cycle, as dashpots feel that.
+static void find_first_forces(const struct run *run)
+{
+    struct dem *dem = dem_of(run);
+    if (dem_cycle(dem) > 0) return;
+    if (run->controlled) set_motions(run->parameters, run->scene, 0, dem);
+    dem_find_forces(dem);
+}
+
 // `duration` may be 0: then the state at the start is recorded and written.
 enum status run_scene(const struct simulate_parameters *parameters, struct scene *scene,
                       const struct vector *force, int threads,
@@ -372,6 +381,7 @@ enum status run_scene(const struct simulate_parameters *parameters, struct scene
                           cycles_between_questions(scene->setup.packing->n_particle)};
     enum status status = begin(&run, force, threads, keeper, reason);
     if (status) return status;
+    find_first_forces(&run);
     record_what_is_due(&run);
     while (!has_come(&run, duration) && !is_at_rest(&run)) {
         status = advance(&run, reason);

@@ -23,6 +23,7 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 void dem_free(struct dem *dem)
 {
@@ -291,7 +292,8 @@ static void begin_cycle(struct dem *dem, const struct run_control *control)
 static void end_cycle(struct dem *dem, struct outcome outcome,
                       struct run_control *control)
 {
-    if (outcome.n_broken > 0) record_cracks(dem);
+    const bool begins = dem->cycle == 0 && dem->n_bond > 0; // see dem_find_forces
+    if (outcome.n_broken > 0 || begins) record_cracks(dem);
     if (dem->liquid) publish_bridge_counts(dem);
     add_up_walls(dem);
     move_walls(dem);
@@ -353,6 +355,21 @@ enum status dem_run(struct dem *dem, int64_t cycles, struct reason *reason)
         free(team.part);
     }
     return control.status;
+}
+
+// The forces of the first cycle, which will find the same ones: without a step done no
+// history grows and nothing is booked. Bonds that break are recorded by that cycle.
+void dem_find_forces(struct dem *dem)
+{
+    if (dem->cycle > 0) return;
+    dem->keeps_loads = true;
+    begin_walls(dem);
+    touch_walls(dem, 0, dem->n_wall_pair);
+    if (dem->liquid) update_bridges(dem, 0, dem->pairs.n_group);
+    dem->sweep(dem, 0, dem->pairs.n_group);
+    if (dem->liquid) publish_bridge_counts(dem);
+    add_up_walls(dem);
+    memset(dem->sum, 0, dem->sum_room * sizeof *dem->sum);
 }
 
 enum status dem_run_until(struct dem *dem, double tolerance, int64_t max_cycles,

@@ -353,6 +353,10 @@ enum status dem_strain(struct dem *dem, const double stretch[3]);
 void dem_set_shrinkage(struct dem *dem, const double *shrinkage);
 void dem_shrinkage(const struct dem *dem, double *shrinkage); // (n_particle) as it is
 
+// Finds the forces of the start before the first cycle, for those who look at it: until
+// then all are 0. Later it does nothing. It changes no run. O(pairs).
+void dem_find_forces(struct dem *dem);
+
 // Runs CYCLES time steps. STATUS_NOT_CONVERGED: it diverged and stopped (a grain would
 // move a tenth of the mean radius in one step, or a number is not finite); what is
 // asked for later is finite but has no meaning. O(CYCLES pairs); pairs are sought again

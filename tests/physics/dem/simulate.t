@@ -166,6 +166,19 @@ near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate t
 near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
      "and stresses the lattice by its stiffness")
 ok("work" not in motion["history"], "record.energy=false keeps no balance")
+# The state at the start has the forces that it begins with, also where nothing follows.
+sc = packing([[*place[:3], 1.01e-3] for place in lattice], (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, False))
+motion = simulate(sc, {"duration": 0, "gravity": [0, 0, 0], "law": "linear", "box": {"walls": ["-z", "+z"]},
+                       "materials": {"glass": {"normal_stiffness": 1e4, "density": 2500}}})
+near(motion["history/stress"][0, 0, 0], 1e4 / 2 * 2e-5 * 2e-3 / 8e-9, 1e-9, "at the start grains that overlap push each other")
+near(motion["history/wall_force"][0, 1, 2], 16 * 1e4 * 1e-5, 1e-9, "and the walls")
+ok(np.abs(np.linalg.norm(motion["contacts/force"][:], axis=1) - 0.1).max() < 1e-10, "with the forces of the contacts recorded")
+motion = simulate(sc, {"duration": 0, "gravity": [0, 0, 0], "law": "linear", "box": {"walls": ["-z"]},
+                       "walls": {"lid": {"point": [0, 0, 8e-3], "normal": [0, 0, -1], "velocity": [0, 0, -1],
+                                         "motion": {"times": [0, 1], "factors": [0, 1]}}},
+                       "materials": {"glass": {"normal_stiffness": 1e4, "density": 2500, "restitution": 0.1}}})
+near(motion["history/wall_force"][0, 1, 2], 16 * 1e4 * 1e-5, 0.01, "a lid that a table of time sets in motion still stands then")
+
 # Grains that overlap at rest, and a lattice that just touches: the strain presses both alike.
 pressed = []
 for radius in (1e-3, 1.01e-3):
