@@ -218,6 +218,32 @@ struct wall_label wall_label(const struct dem_wall *wall, int w)
 
 // Sizes by shape: a plane has none, a block has edges, all others a radius. A servo
 // moves along the normal, so only a plane can have one.
+// A grain meets a wall in the nearest image. Across an axis that repeats this is a
+// saw of a plane, and of a cylinder aslant to it.
+static enum status check_images(const struct dem_setup *setup, int w,
+                                struct reason *reason)
+{
+    static const double nearly = 1e-9;
+    const struct dem_wall *wall = &setup->wall[w];
+    const bool plane = wall->shape == DEM_PLANE;
+    for (int axis = 0; axis < 3; axis++) {
+        if (!setup->packing->periodic[axis]) continue;
+        const double along = fabs(component(wall->normal, axis)) / norm(wall->normal);
+        if (plane && along > nearly)
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "%s: the box repeats along %c: a plane must be parallel to it",
+                wall_label(wall, w).text, "xyz"[axis]);
+        if (wall->shape == DEM_CYLINDER && along > nearly && along < 1 - nearly)
+            return refuse(
+                reason, STATUS_BAD_DATA,
+                "%s: the box repeats along %c: the axis of a cylinder must be "
+                "along or across",
+                wall_label(wall, w).text, "xyz"[axis]);
+    }
+    return STATUS_OK;
+}
+
 static enum status check_wall(const struct dem_setup *setup, int w,
                               struct reason *reason)
 {
@@ -256,7 +282,7 @@ static enum status check_wall(const struct dem_setup *setup, int w,
                       "%s: a servo moves a plane, by a force and a largest speed "
                       "> 0, got %g and %g",
                       label.text, wall->servo_force, wall->servo_largest_speed);
-    return STATUS_OK;
+    return check_images(setup, w, reason);
 }
 
 // A grain has one master: it is fixed, or driven, or free.

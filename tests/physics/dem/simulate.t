@@ -166,6 +166,16 @@ near(height, 8e-3 * math.exp(-1e-3), 1e-5, "a strained box shrinks by exp(rate t
 near(motion["history/stress"][-1, 2, 2], 1e4 / 2 * (8e-3 - height) / 4 / 4e-6, 1e-2,
      "and stresses the lattice by its stiffness")
 ok("work" not in motion["history"], "record.energy=false keeps no balance")
+# Where the box repeats, a plane aslant would be a saw, whose teeth throw grains out.
+sc = packing([0.012, 0.005, 0.05, 1e-3], (0, 0, 0), (.02, .02, .06), (True, False, False))
+for title, wall, says in [
+        ("a slope along a box that repeats", {"normal": [0.3, 0, 1]}, "repeats along x: a plane must be parallel"),
+        ("a lid across it", {"normal": [1, 0, 0]}, "repeats along x: a plane must be parallel"),
+        ("a pipe aslant", {"shape": "cylinder", "radius": 0.1, "normal": [1, 1, 0]}, "must be along or across")]:
+    refused(title, f"simulate.walls.wall: the box {says}" if "repeats" in says else says, "simulate", "-q", sc,
+            *sets("duration=0.01", 'materials={"glass":{"young_modulus":1e7}}',
+                  "walls=" + json.dumps({"wall": {"point": [0.01, 0, 0], **wall}})), "-o", at("refused"))
+
 # The state at the start has the forces that it begins with, also where nothing follows.
 sc = packing([[*place[:3], 1.01e-3] for place in lattice], (0, 0, 0), (8e-3, 8e-3, 8e-3), (True, True, False))
 motion = simulate(sc, {"duration": 0, "gravity": [0, 0, 0], "law": "linear", "box": {"walls": ["-z", "+z"]},
