@@ -217,7 +217,10 @@ void put_final_packing(struct artifact *artifact,
     struct vector *velocity = NEW_ARRAY(struct vector, n);
     dem_positions(outcome->dem, packing.position);
     dem_box(outcome->dem, &packing.lower, &packing.upper);
-    dem_velocities(outcome->dem, velocity);
+    dem_velocities_at_places(outcome->dem, velocity);
+    const bool began = dem_cycle(outcome->dem) > 0;
+    for (int i = 0; i < n && !began; i++) // those given: no force has acted yet
+        if (!scene->driven_of[i]) velocity[i] = scene->velocity[i];
     for (int i = 0; i < n; i++)
         velocity[i] = add(velocity[i], strain_velocity(parameters, packing.lower,
                                                        packing.position[i]));

@@ -442,6 +442,9 @@ void dem_positions(const struct dem *dem, struct vector *position);
 void dem_displacements(const struct dem *dem, struct vector *displacement);
 void dem_velocities(const struct dem *dem, struct vector *velocity);
 void dem_spins(const struct dem *dem, struct vector *spin);
+// Velocities of the time of the positions, m/s, by the last forces: exact where these
+// last.
+void dem_velocities_at_places(const struct dem *dem, struct vector *velocity);
 void dem_radii(const struct dem *dem, double *radius);                           // m
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper); // m
 

@@ -72,6 +72,18 @@ void dem_velocities(const struct dem *dem, struct vector *velocity)
         velocity[dem->id[i]] = scale(unit, as_vector(velocity_of(dem, i)));
 }
 
+void dem_velocities_at_places(const struct dem *dem, struct vector *velocity)
+{
+    const double unit = dem->unit.length / dem->unit.time;
+    for (int i = 0; i < dem->n_particle; i++) {
+        const struct motion load = load_on_grain(dem, i);
+        const double kick = 0.5 * dem->time_step * dem->mobility[i][0];
+        const struct vector now =
+            add(as_vector(velocity_of(dem, i)), scale(kick, as_vector(load.linear)));
+        velocity[dem->id[i]] = scale(unit, now);
+    }
+}
+
 void dem_spins(const struct dem *dem, struct vector *spin)
 {
     for (int i = 0; i < dem->n_particle; i++)

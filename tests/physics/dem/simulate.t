@@ -48,6 +48,19 @@ ok(np.abs(z - 0.9 + 0.5 * 9.81 * time**2).max() < 1e-12 and len(time) == 21,
    "a grain falls by g t^2 / 2 to rounding, at 21 snapshots", z)
 near(motion["summary"].attrs["time"], 0.1, 1e-3, "for as long as was asked")
 
+# Ten runs, each from the packing that the one before wrote, fall as one does.
+fall = packing([0, 0, 0.9, 1e-3])
+for k in range(10):
+    end = simulate(fall, {"duration": 0.01, "time_step": 1e-4, "write": "packing"})
+    place, speed = end["particles/position"][0, 2], end["particles/velocity"][0, 2]
+    end.close()
+    fall = shutil.copy(at("motion"), at("fallen"))
+near(place - 0.9, -0.5 * 9.81 * 0.1**2, 1e-9, "a grain falls on from a packing as if it had not stopped")
+near(speed, -0.981, 1e-9, "with the velocity of the time of its place")
+end = simulate(packing([[0, 0, 0, 1e-3], [1.9e-3, 0, 0, 1e-3]]),
+               {"duration": 0, "write": "packing", "groups": {"all": {"initial": {"velocity": [1, 2, 3]}}}})
+ok((end["particles/velocity"][:] == [1, 2, 3]).all(), "a run of no duration writes the velocities that it was given")
+
 motion = simulate(packing([0, 0, 0.05 + 1e-3, 1e-3]),
                   {"duration": 0.2, "walls": {"floor": {"point": [0, 0, 0]}}, "time_step_share": 0.02,
                    "record": {"snapshots_every": 1e-4}})
