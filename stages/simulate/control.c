@@ -145,15 +145,14 @@ static void move_wall(const struct scene *scene, double time, struct dem *dem, i
         dem_set_servo(dem, w, factor * wall->servo_force);
 }
 
-// The return value is dropped: scene_init refused bonds and driven groups, and radii do
-// not grow, so there is nothing left to refuse.
-static void strain_box(const struct simulate_parameters *parameters, struct dem *dem)
+static enum status strain_box(const struct simulate_parameters *parameters,
+                              struct dem *dem, struct reason *reason)
 {
     const double span = CONTROL_EVERY * dem_time_step(dem);
     double stretch[3];
     for (int axis = 0; axis < 3; axis++)
         stretch[axis] = exp(parameters->strain_rate[axis] * span);
-    dem_strain(dem, stretch);
+    return dem_strain(dem, stretch, reason);
 }
 
 struct vector strain_velocity(const struct simulate_parameters *parameters,
@@ -182,9 +181,10 @@ void set_motions(const struct simulate_parameters *parameters,
     }
 }
 
-void control(const struct simulate_parameters *parameters, const struct scene *scene,
-             double time, struct dem *dem)
+enum status control(const struct simulate_parameters *parameters,
+                    const struct scene *scene, double time, struct dem *dem,
+                    struct reason *reason)
 {
     set_motions(parameters, scene, time, dem);
-    if (strains(parameters)) strain_box(parameters, dem);
+    return strains(parameters) ? strain_box(parameters, dem, reason) : STATUS_OK;
 }

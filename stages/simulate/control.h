@@ -20,10 +20,11 @@ double mean_factor(const struct time_table *table, double time, double span);
 
 // Sets motions and servos for TIME, s, and strains the box for CONTROL_EVERY cycles.
 // Call it when dem_cycle is a multiple of CONTROL_EVERY, before these cycles run. TIME
-// is that of the beginning of the span, dem_time(DEM). It cannot fail: scene_init has
-// refused all scenes that DEM would refuse to strain.
-void control(const struct simulate_parameters *parameters, const struct scene *scene,
-             double time, struct dem *dem);
+// is that of the beginning of the span, dem_time(DEM). STATUS_BAD_DATA: the box would
+// be too narrow. scene_init has refused all else that DEM would refuse to strain.
+enum status control(const struct simulate_parameters *parameters,
+                    const struct scene *scene, double time, struct dem *dem,
+                    struct reason *reason);
 // The same without the strain.
 void set_motions(const struct simulate_parameters *parameters,
                  const struct scene *scene, double time, struct dem *dem);

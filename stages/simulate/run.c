@@ -209,9 +209,11 @@ static enum status check_overlap(const struct run *run, struct reason *reason)
 static enum status advance(struct run *run, struct reason *reason)
 {
     struct dem *dem = dem_of(run);
-    if (run->controlled && dem_cycle(dem) % CONTROL_EVERY == 0)
-        control(run->parameters, run->scene, dem_time(dem), dem);
     struct reason cause;
+    if (run->controlled && dem_cycle(dem) % CONTROL_EVERY == 0 &&
+        control(run->parameters, run->scene, dem_time(dem), dem, &cause))
+        return refuse(reason, STATUS_NOT_CONVERGED, "at %.4g s: %.400s", dem_time(dem),
+                      cause.text);
     enum status status = dem_run(dem, next_cycles(run), &cause);
     if (status)
         return refuse(reason, status, "at %.4g s: %.400s", dem_time(dem), cause.text);

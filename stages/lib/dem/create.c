@@ -358,16 +358,19 @@ static void choose_time_step(struct dem *dem, const struct dem_setup *setup)
 
 // Each pair must be near in one image only. Twice the longest distance at which two
 // grains are a pair: otherwise the list would need the image of each.
-static enum status check_periods(const struct dem *dem, struct reason *reason)
+enum status check_periods(const struct dem *dem, const double stretch[3],
+                          struct reason *reason)
 {
     const double least =
         2 * (2 * dem->largest_radius + FIRST_SKIN + bridge_cutoff(dem));
-    for (int axis = 0; axis < 3; axis++)
-        if (dem->period[axis] != 0 && !(dem->period[axis] >= least))
+    for (int axis = 0; axis < 3; axis++) {
+        const double period = dem->period[axis] * stretch[axis];
+        if (dem->period[axis] != 0 && !(period >= least))
             return refuse(reason, STATUS_BAD_DATA,
                           "periodic box is %g m along %c, needs at least %g m",
-                          dem->period[axis] * dem->unit.length, "xyz"[axis],
+                          period * dem->unit.length, "xyz"[axis],
                           least * dem -> unit.length);
+    }
     return STATUS_OK;
 }
 
@@ -459,7 +462,8 @@ static enum status build(struct dem *dem, const struct dem_setup *setup,
     enum status status =
         setup->liquid ? take_liquid(dem, setup->liquid, reason) : STATUS_OK;
     if (setup->adhesion > 0) take_adhesion(dem, setup->adhesion / dem->unit.stiffness);
-    if (status == STATUS_OK) status = check_periods(dem, reason);
+    const double one[3] = {1, 1, 1};
+    if (status == STATUS_OK) status = check_periods(dem, one, reason);
     if (status != STATUS_OK) return status;
     renumber_grains(dem);
     find_pairs(dem);

@@ -343,8 +343,9 @@ void dem_inertia_ratios(const struct dem *dem, double *ratio);
 // grains with liquid grow. O(pairs).
 enum status dem_rescale(struct dem *dem, const double stretch[3], double growth);
 // The same without growth, but the shear springs of contacts between grains feel how
-// the strain moves the grains past each other.
-enum status dem_strain(struct dem *dem, const double stretch[3]);
+// the strain moves the grains past each other. STATUS_BAD_DATA also where the box would
+// be too narrow for one image of each pair.
+enum status dem_strain(struct dem *dem, const double stretch[3], struct reason *reason);
 
 // Drying shrinkage of every grain (n_particle): the linear strain, below 1, by which it
 // is smaller than at the start; its bonds and contacts follow from the next cycle on

@@ -402,6 +402,9 @@ double own_mass(const struct dem *dem, int i);
 // Sets external forces from what is applied and gravity.
 void set_external(struct dem *dem);
 void set_equal_mobility(struct dem *dem); // sets equal_mobility
+// STATUS_BAD_DATA: the periods times STRETCH are too short for one image of each pair.
+enum status check_periods(const struct dem *dem, const double stretch[3],
+                          struct reason *reason);
 
 // Liquid bridges [liquid.c]; all but the first two only in wet scenes. The longest gap,
 // scaled, at which pairs must still be listed.

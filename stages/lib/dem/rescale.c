@@ -234,9 +234,12 @@ enum status dem_rescale(struct dem *dem, const double stretch[3], double growth)
     return rescale(dem, stretch, growth, false);
 }
 
-enum status dem_strain(struct dem *dem, const double stretch[3])
+enum status dem_strain(struct dem *dem, const double stretch[3], struct reason *reason)
 {
-    return rescale(dem, stretch, 1, true);
+    const enum status status = check_periods(dem, stretch, reason);
+    if (status != STATUS_OK) return status;
+    if (rescale(dem, stretch, 1, true) == STATUS_OK) return STATUS_OK;
+    return refuse(reason, STATUS_BAD_DATA, "bonds and driven groups are not strained");
 }
 
 void dem_box(const struct dem *dem, struct vector *lower, struct vector *upper)

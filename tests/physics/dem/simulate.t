@@ -235,6 +235,13 @@ for way in ((1, 1, 0), (1, -1, 0), (1, 0, 1), (1, 0, -1), (0, 1, 1), (0, 1, -1))
 stress = motion["history/stress"][-1]
 ok(np.abs(stress - wanted).max() < 1e-3 * wanted.max(), "a strain shears the contacts of a close-packed lattice", (stress, wanted))
 
+# Grains that touch in two images at once would feel one of them.
+narrow = packing([[1e-3, 1e-3, 1e-3, 1e-3]], (0, 0, 0), (5e-3, 5e-3, 5e-3), (True, True, True))
+with open(at("scene.json"), "w") as file:
+    json.dump({"materials": SOFT, "duration": 0.2, "gravity": [0, 0, 0], "box": {"strain_rate": [0.5, 0.5, -1]}}, file)
+ended = subprocess.run([f"{BIN}/simulate", "-q", "-p", at("scene.json"), narrow, "-o", at("refused")], capture_output=True)
+ok(ended.returncode == 3 and b"s: periodic box is 0.004" in ended.stderr, "a strain that makes the box too narrow ends the run", ended)
+
 # Grains pressed together and sheared: the box does the work that their stress says.
 wild = np.random.default_rng(3)
 pressed = [[*((np.array([i, j, k]) + .5 + wild.uniform(-.12, .12, 3)) * 2e-3), wild.uniform(.9e-3, 1.2e-3)]
