@@ -412,7 +412,7 @@ int main(int argc, char **argv)
         &response);
     note_bond_numbers(&weight, largest_force(&load));
     if (!invocation.quiet) warn_of_replay(&packing, &load, settings, &response);
-    if (!invocation.quiet) warn_of_weight(&weight, &response, &packing);
+    if (!invocation.quiet) warn_of_weight(&weight, settings, &response, &packing);
     write_response(&packing, &load, settings, &response, &weight, &invocation, input,
                    digest);
 

@@ -100,11 +100,12 @@ void note_bond_numbers(struct taken_weight *weight, double largest)
 
 // ---- told ---------------------------------------------------------------------------
 
-// Weight matters from a twentieth of the suction on.
-void warn_of_weight(const struct taken_weight *weight, const struct response *response,
-                    const struct packing *packing)
+// Weight matters from a twentieth of the suction on. The body need not come nearer to
+// rest under it than under a load.
+void warn_of_weight(const struct taken_weight *weight,
+                    const struct replay_settings *settings,
+                    const struct response *response, const struct packing *packing)
 {
-    static const double settled = 1e-4;
     const double most = fmax(weight->numbers.grain, weight->numbers.body);
     if (weight->gravity == 0 && most >= WEIGHT_MATTERS)
         report("gravity is left out, but %s weighs %.2g of its suction: gravity=9.81 "
@@ -122,10 +123,12 @@ void warn_of_weight(const struct taken_weight *weight, const struct response *re
         report("%d of %d bonds broke under the weight alone, before drying: they are "
                "in /weight_cracks, and are no cracks of drying",
                response->n_weight_crack, packing->n_bond);
-    if (response->weight_unbalanced_ratio >= settled)
-        report("under its weight alone the body did not come to rest before drying: "
-               "the unbalanced ratio is %.2g",
-               response->weight_unbalanced_ratio);
+    if (response->weight_unbalanced_ratio >= ratio_at_rest(settings))
+        report(
+            "under its weight alone the body did not come to rest before drying: "
+            "the unbalanced ratio is %.2g, not below %g (larger cycles give time steps "
+            "longer)",
+            response->weight_unbalanced_ratio, ratio_at_rest(settings));
 }
 
 // The value, not whether it was given: who writes the default down means it as little.

@@ -38,8 +38,9 @@ void note_bond_numbers(struct taken_weight *weight, double largest);
 
 // Warns on standard error if a weight that matters is left out, and of what the weight
 // did alone.
-void warn_of_weight(const struct taken_weight *weight, const struct response *response,
-                    const struct packing *packing);
+void warn_of_weight(const struct taken_weight *weight,
+                    const struct replay_settings *settings,
+                    const struct response *response, const struct packing *packing);
 
 // Warns if stiffnesses or strengths are the defaults, those of K's grains [K Table
 // 5.1], and the mean radius is more than ten times larger or smaller.

@@ -9,8 +9,8 @@
 //
 //     response   steps_unsettled > 0, and mean.unsettled.cracks of crackstats;
 //                gone > 0; snaps > 0; bond_number_body or _grain >= WEIGHT_MATTERS
-//                without gravity; weight_cracks > 0; weight_unbalanced_ratio >= 1e-4;
-//                a packing as its input, without a drying
+//                without gravity; weight_cracks > 0; weight_unbalanced_ratio >=
+//                tolerance; a packing as its input, without a drying
 //     forces     force_scale != 1; interpolation_error > 0.1; field_error > 0.05
 //     drying     shut_throats > 0; enclosed_throats > 0; balance_error > 1e-6;
 //                residual or liquid_residual > 1e-3; throats that refilled (body.c)
@@ -87,6 +87,19 @@ static void warn_of_course(FILE *page, const struct run *run)
              "No drying empties the throats here: they are drawn full to the end.");
 }
 
+// As ratio_at_rest of dem-replay: its tolerance, or K's 1e-4 where that is null.
+static double ratio_at_rest(const struct run *run)
+{
+    char *text =
+        run->of[RESPONSE] ? artifact_get_text(run->of[RESPONSE], "parameters") : NULL;
+    json_t *parameters = text ? json_loads(text, 0, NULL) : NULL;
+    const double tolerance =
+        json_number_value(json_object_get(parameters, "tolerance"));
+    free(text);
+    json_decref(parameters);
+    return tolerance > 0 ? tolerance : 1e-4;
+}
+
 // fmax takes the one that is known. Where gravity is in the run its Bond number is no
 // warning.
 static void warn_of_weight(FILE *page, const struct run *run)
@@ -102,7 +115,7 @@ static void warn_of_weight(FILE *page, const struct run *run)
              "%.0f bonds broke under the weight alone, before drying: they are not "
              "among the cracks.",
              broke);
-    if (rest >= 1e-4)
+    if (rest >= ratio_at_rest(run))
         warn(page,
              "Under its weight alone the body did not come to rest before drying: the "
              "unbalanced ratio is %.2g.",

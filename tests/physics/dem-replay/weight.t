@@ -193,6 +193,19 @@ with scratch_paths() as at:
     ok(made.returncode == 65 and "must be 0 in a box that is periodic along z" in made.stderr,
        "no gravity along a side that repeats", made.stderr)
 
+    # ---- whether it came to rest ----------------------------------------------------------
+    pack([1, 1, n])
+    forces(np.zeros((2, n, 3)))
+    for tolerance, rests in (1e-2, True), (1e-3, False):
+        response, said = replay("engine=explicit", f"tolerance={tolerance}", "cycles=2", "local_damping=0.7")
+        ratio = response["summary"].attrs["weight_unbalanced_ratio"]
+        response.close()
+        page = run("report", at("response"), "-o", "-").decode()
+        ok(1e-4 < ratio and (ratio < tolerance) == rests, f"ratio under the weight, tolerance={tolerance}", ratio)
+        ok(("did not come to rest before drying" in said) != rests
+           and ("did not come to rest before drying" in page) != rests,
+           "replay and page complain only where it is not below the tolerance", said)
+
     # ---- Bond numbers -------------------------------------------------------------------
     pack([3, 3, 4])
     suction = 200.0
