@@ -317,6 +317,14 @@ expected = report["weight"]["grain"], report["weight"]["body"]
 # The chain's box is higher than the grains, which changes neither number.
 ok("weight" in [f["name"] for f in report["findings"]] and all(0.5 < e / m < 2 for e, m in zip(expected, measured)),
    "the weight to expect, beside what the whole chain measures", (expected, measured))
+# A column five times as high weighs five times as much: the note says so, and what its bonds need.
+tall = np.concatenate([[[0, 0, k * np.ptp(np.loadtxt(beads_mm)[:, 2])]] * 300 for k in range(5)])
+tall = text("beads-tall", np.tile(np.loadtxt(beads_mm)[:, :3], (5, 1)) + 1.1 * tall, np.tile(np.loadtxt(beads_mm)[:, 3], 5))
+heavy = check(tall, "--set", "import.scale=1e-3")[1]
+said = {name: {f["name"]: f["text"] for f in found["findings"]}["weight"] for name, found in (("low", report), ("tall", heavy))}
+ok("gravity=9.81 in dry" in said["low"] and "strengths" not in said["low"] and 4 * expected[1] < 1
+   and f"up to {4 * heavy['weight']['body']:.2g} times the strengths suggested" in said["tall"],
+   "a body that is heavy needs stronger bonds than suggested", said)
 twice = text("beads-twice", 1e3 * h5py.File(at("beads.h5"))["particles/position"][:],
              2e3 * h5py.File(at("beads.h5"))["particles/radius"][:])
 ok(check(twice, "--set", "import.scale=1e-3", "--set", "import.diameters=true")[1]["radius"]
