@@ -47,12 +47,17 @@ for title, change, line in [
          "/domain/periodic: row 0: must be 0 where the wall around the grains is round")]:
     refused(f"{title} is refused", BAD_DATA, ["tessellate", damaged("round", change)],
             f"damaged: {line}")
+refused("void volumes within a round wall", BAD_DATA,
+        ["tessellate", "--set", "throat_volume=void", "round"],
+        r"round: tessellate\.throat_volume: void must go with flat walls, .* \(pack\.domain\): leave it "
+        "out, or say cylinder")
 make("periodic", "pack", "--set", "method=poisson", "--set", "count=60", "--set", "bonds=none",
      "--set", "upper=[4e-6,4e-6,4e-6]", "--set", "periodic=[true,true,true]")
 make("periodic-network", "tessellate", "periodic")
 refused("a box that repeats has no open wall", BAD_DATA,
         ["dry", "--set", "throat_radius.distribution=normal", "periodic-network"],
-        r"periodic-network: /domain/periodic: the open wall cannot be on an axis .*")
+        r"periodic-network: /domain/periodic: the open wall cannot be on an axis .*, z: open another "
+        r"side, or cut the body across z by pack\.slab\.lower and pack\.slab\.upper")
 for program in "dry", "invade":
     refused(f"{program} refuses a mean of radii that are not drawn", BAD_DATA,
             [program, "--set", "throat_radius.mean=2e-7", "network"],

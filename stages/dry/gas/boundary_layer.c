@@ -202,7 +202,9 @@ enum status boundary_layer_init(const struct network *network, int wall, double 
     if (network->packing.periodic[wall / 2])
         return refuse(reason, STATUS_BAD_DATA,
                       "/domain/periodic: the open wall cannot be on an axis along "
-                      "which the box is periodic");
+                      "which the box is periodic, %c: open another side, or cut the "
+                      "body across z by pack.slab.lower and pack.slab.upper",
+                      "xyz"[wall / 2]);
 
     struct open_surface face = open_surface_of(network, wall, length);
     enum status status = find_feet(&face, form->feet, layer, reason);
