@@ -102,8 +102,12 @@ static enum status give_void_volumes(const struct tessellation *how,
     if (how->layer || how->boundary == BOUNDARY_ELIMINATE || network->packing.n_body)
         return refuse(
             reason, STATUS_BAD_DATA,
-            "tessellate.throat_volume: void must go with whole cells and flat "
-            "walls: dimensions=3, boundary=truncate");
+            "tessellate.throat_volume: void must go with %s: leave it out, or say "
+            "cylinder",
+            how->layer || how->boundary == BOUNDARY_ELIMINATE
+                ? "dimensions=3 and boundary=truncate, which leave cells whole"
+                : "flat walls, not those of a cylinder, ring or sphere or of a part "
+                  "cut out (pack.domain)");
     return find_void_volumes(network, reason);
 }
 

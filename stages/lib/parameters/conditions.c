@@ -110,7 +110,8 @@ static enum status complete_air(struct conditions *conditions, struct reason *re
         return refuse(
             reason, STATUS_BAD_DATA,
             "relative_humidity: is that of water vapour, but the liquid is %s: give "
-            "the pressure of its vapour in the air, air_vapour_pressure",
+            "the pressure of its vapour in the air, air_vapour_pressure, or leave both "
+            "out for air without any",
             fluid_name((enum fluid)conditions->fluid));
     if (!isnan(conditions->air_vapour_pressure))
         return refuse(reason, STATUS_BAD_DATA,

@@ -139,7 +139,8 @@ with scratch_paths() as at:
             "here (docs/fluids.md)", "fluid=nmp", "temperature=353.15")
     refused("another liquid has to be described", "saturation_pressure: must be given in Pa: with fluid=other",
             "fluid=other")
-    refused("humidity is that of water", "relative_humidity: is that of water vapour, but the liquid is ethanol",
+    refused("humidity is that of water", "relative_humidity: is that of water vapour, but the liquid is ethanol: give the "
+            "pressure of its vapour in the air, air_vapour_pressure, or leave both out for air without any",
             "fluid=ethanol", "relative_humidity=0.4")
     refused("humidity beside a vapour pressure", "relative_humidity: must be null where air_vapour_pressure is",
             "relative_humidity=0.4", "air_vapour_pressure=900")
