@@ -50,9 +50,23 @@ static void fit_bodies(struct packing *packing, double below, double above)
     }
 }
 
+// What the input says of its own box stands; all false is the default, and says
+// nothing.
+static void warn_of_periodic(const char *path, const struct packing *packing,
+                             const bool given[3])
+{
+    const uint8_t *own = packing->periodic;
+    if (!given[0] && !given[1] && !given[2]) return;
+    if (own[0] == given[0] && own[1] == given[1] && own[2] == given[2]) return;
+    const char *const word[] = {"false", "true"};
+    report("pack.periodic: has no effect: the box is that of %s, with periodic = "
+           "[%s,%s,%s] (pack.slab cuts it across z)",
+           input_name(path), word[own[0]], word[own[1]], word[own[2]]);
+}
+
 // Grains from text or from another packing; INPUTS gets what the provenance says of it.
 static struct packing import(const char *path, const struct pack_parameters *parameters,
-                             double *unit, json_t *inputs)
+                             bool quiet, double *unit, json_t *inputs)
 {
     bool has_box;
     struct packing packing =
@@ -60,6 +74,8 @@ static struct packing import(const char *path, const struct pack_parameters *par
     if (parameters->import_scale != 1) *unit = 0;
     for (int axis = 0; axis < 3 && !has_box; axis++)
         packing.periodic[axis] = parameters->domain.periodic[axis];
+    if (has_box && !quiet)
+        warn_of_periodic(path, &packing, parameters->domain.periodic);
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
                    has_box);
     refuse_large_radii(&packing, path);
@@ -118,7 +134,7 @@ struct packing make_import(const struct invocation *invocation,
                            struct domain *domain, double *unit)
 {
     const char *path = invocation->n_input ? invocation->inputs[0] : "-";
-    struct packing packing = import(path, parameters, unit, inputs);
+    struct packing packing = import(path, parameters, invocation->quiet, unit, inputs);
     *domain = is_plain(parameters) ? keep_bodies(parameters, &packing, path)
                                    : replace_bodies(parameters, &packing);
     packing.n_body = domain_bodies(domain, packing.body);

@@ -217,6 +217,15 @@ ok(np.array_equal(last.x, position / 2) and np.array_equal(first.x, position)
    and np.array_equal(first.r, radius), "frames of a dump: the last, or the one asked for")
 ok(list(first.periodic) == [True, False, True] and np.array_equal(first.lower, lower)
    and np.array_equal(first.edge, [3, 3, 3]), "its box and periodic sides")
+with scratch() as folder:
+    path = os.path.join(folder, "dump")
+    with open(path, "w") as file:
+        file.write(frames)
+    for given, warned in ("[true,true,true]", True), ("[true,false,true]", False), ("[false,false,false]", False):
+        said = subprocess.run([f"{BIN}/pack", *sets("method=import", "bonds=none", "import.scale=1e-3", f"periodic={given}"), path],
+                              capture_output=True).stderr.decode()
+        ok(("periodic: has no effect: the box is that of " in said and "periodic = [true,false,true]" in said) == warned,
+           f"periodic={given}, beside the dump's own", said)
 mixed = dump("id element xs ys zs vx diameter",
              lambda i: (i + 1, "Si", *((position[i] - lower) / edge).tolist(), 0, 2 * radius[i]),
              0, order=generator.permutation(50))
