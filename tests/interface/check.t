@@ -296,6 +296,28 @@ for title, position, radius in [("all digits", x, r), ("a lattice of unequal gra
                                 ("grains far apart", np.rint(30 * x / 1e-7) * 1e-7, r)]:
     ok("rounded" not in [f["name"] for f in check(text("fine", position, radius))[1]["findings"]], f"{title}: no note")
 
+# ---- round bodies --------------------------------------------------------------------------
+
+# Cut out of a lattice wider than they: what their box leaves empty is not a tenth far from grains.
+wide = 1e-4 * (np.indices((14, 14, 14)).reshape(3, -1).T - 6.5)
+for title, seen, inside in [("a cylinder along x", "x", np.hypot(wide[:, 1], wide[:, 2])),
+                            ("a cylinder along z", "z", np.hypot(wide[:, 0], wide[:, 1])),
+                            ("a sphere", "sphere", np.linalg.norm(wide, axis=1)), ("a cube", None, np.zeros(len(wide)))]:
+    kept = wide[inside < 6.2e-4] + [3, -2, 7]
+    path = text("shape", kept, np.full(len(kept), 5e-5))
+    status, report, agree = check(path)
+    told = {f["name"]: f["text"] for f in report["findings"] if f["severity"] == "wrong"}.get("round", "")
+    reach = inside[inside < 6.2e-4].max() + 5e-5
+    ok(agree and (f"end at a {'sphere' if seen == 'sphere' else f'cylinder along {seen}'}" in told if seen else not told),
+       f"{title} in a box of flat walls", report["findings"])
+    ok(("exchange x and z" in told) == (seen == "x"), "which stands along z")
+    if seen in ("z", "sphere"):
+        words = ["pack.method=import", *told[told.index("pack.domain"):].split()]
+        run("pack", "-q", *sets(*(w[5:] for w in words)), path, "-o", at("shaped"))
+        with h5py.File(at("shaped")) as file:
+            size = (file["domain/upper"][0] - file["domain/lower"][0]) / 2
+        ok(abs(size / reach - 1) < 1e-5 and "round" not in names(check(at("shaped"))[1]), "what it names makes the body", size)
+
 # ---- weight -------------------------------------------------------------------------------
 
 # Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.

@@ -98,7 +98,7 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
 // Of grains in a body the walls need not be those of the box.
 static const char *or_domain(const struct packing_facts *facts)
 {
-    return facts->bounded ? " (round walls: pack.domain)" : "";
+    return facts->bounded ? " (round walls: pack.domain; they stand along z)" : "";
 }
 
 // The gravest of three only: a grain outside has its centre outside, too.
@@ -198,6 +198,32 @@ static void say_ends(const struct packing_facts *facts, struct vector low,
                 n, high.y, n, high.z);
 }
 
+// A wider box is told by say_ends as well. Cylinders of pack stand along z.
+static void judge_roundness(const struct packing_facts *facts,
+                            struct findings *findings)
+{
+    if (facts->round < 0) return;
+    const int axis = facts->round;
+    if (axis == 3) {
+        add_finding(findings, FINDING_WRONG, "round",
+                    "the grains end at a sphere, and %.0f %% of their box, its "
+                    "corners, would fill with liquid: pack.domain.shape=sphere "
+                    "pack.domain.radius=%.6g",
+                    100 * (1 - M_PI / 6), facts->reach);
+        return;
+    }
+    char turn[60] = "";
+    if (axis != 2)
+        snprintf(turn, sizeof turn,
+                 "exchange %c and z, along which it must stand, and ", "xy"[axis]);
+    const double height = component(facts->upper, axis) - component(facts->lower, axis);
+    add_finding(findings, FINDING_WRONG, "round",
+                "the grains end at a cylinder along %c, and %.0f %% of their box, its "
+                "corners, would fill with liquid: %spack.domain.shape=cylinder "
+                "pack.domain.radius=%.6g pack.domain.height=%.6g",
+                "xyz"[axis], 100 * (1 - M_PI / 4), turn, facts -> reach, height);
+}
+
 // `far` is how far from a surface a place must be to count as empty; where the grains
 // reach all walls, the empty part is inside.
 static void judge_room(const struct packing_facts *facts, struct findings *findings)
@@ -266,6 +292,7 @@ void judge_packing(const struct packing *packing, const struct packing_facts *fa
     judge_units(facts, findings);
     judge_places(facts, findings);
     judge_room(facts, findings);
+    judge_roundness(facts, findings);
     judge_width(packing, facts, findings);
     judge_overlaps(facts, findings);
     judge_plane(facts, findings);

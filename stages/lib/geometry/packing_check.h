@@ -32,6 +32,8 @@ struct packing_facts {
     int free;           // grains that touch neither grain nor wall
     double radius_unit; // what radii must be times to be in the unit of the places
     int plane;          // axis along which all centres lie in one plane; -1: none
+    int round;    // axis of a cylinder at which grains end in a flat box; 3: sphere
+    double reach; // from this axis, or the middle, to the outermost surface, m
 };
 
 // Share of the smaller radius: a larger overlap closes throats between grains.

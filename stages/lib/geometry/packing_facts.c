@@ -122,6 +122,49 @@ static void measure_extent(const struct packing *packing, struct packing_facts *
         1 - (1 - facts->porosity) * (box_volume(edge) / packing_domain_volume(&body));
 }
 
+// How far surfaces of grains reach from the middle of the body, or, with an AXIS from 0
+// to 2, from the line along it through the middle.
+static double reach_from_middle(const struct packing *packing,
+                                const struct packing_facts *facts, int axis)
+{
+    const struct vector middle = midpoint(facts->lower, facts->upper);
+    double reach = 0;
+    for (int i = 0; i < packing->n_particle; i++) {
+        if (is_auxiliary(packing, i)) continue;
+        struct vector from = subtract(packing->position[i], middle);
+        if (axis < 3) set_component(&from, axis, 0);
+        reach = fmax(reach, norm(from) + packing->radius[i]);
+    }
+    return reach;
+}
+
+// Whether the grains end at a cylinder or sphere, and leave the corners of their box
+// empty. In a full box they reach there: already where four grains are side by side a
+// quarter further than half its width. Not of fewer grains, which have no corners.
+static void measure_roundness(const struct packing *packing,
+                              struct packing_facts *facts)
+{
+    static const double SQUARE = 0.05; // difference of two widths, of one
+    static const double AS_ROUND = 1.15, LEAST_ACROSS = 8; // largest radii
+    const struct vector edge = subtract(facts->upper, facts->lower);
+    for (int axis = 0; axis < 4 && !facts->bounded; axis++) {
+        double least = HUGE_VAL, most = 0;
+        bool ends = true;
+        for (int across = 0; across < 3; across++) {
+            if (across == axis) continue;
+            least = fmin(least, component(edge, across));
+            most = fmax(most, component(edge, across));
+            ends = ends && !packing->periodic[across];
+        }
+        if (!ends || least < LEAST_ACROSS * facts->largest) continue;
+        if (most - least > SQUARE * most) continue;
+        const double reach = reach_from_middle(packing, facts, axis);
+        if (reach > AS_ROUND * most / 2) continue;
+        facts->round = axis;
+        facts->reach = reach;
+    }
+}
+
 // ---- empty space --------------------------------------------------------------------
 
 // Places in the middles of equal cells of the box.
@@ -239,10 +282,12 @@ struct packing_facts packing_facts(const struct packing *packing,
                                   .deepest = -1,
                                   .same = {-1, -1},
                                   .worst = {-1, -1},
-                                  .plane = -1};
+                                  .plane = -1,
+                                  .round = -1};
     facts.radius_unit = radius_unit(packing);
     measure_sizes(packing, &facts);
     measure_extent(packing, &facts);
+    measure_roundness(packing, &facts);
     measure_walls(packing, &facts);
     measure_empty(packing, &facts);
     measure_pairs(packing, contacts, &facts);
