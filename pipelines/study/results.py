@@ -2,12 +2,16 @@
 """What came out: a table of all runs, and their summary."""
 import json
 import os
+from types import SimpleNamespace
 
 from common import number, row, write
 from counts import probability, three
 from definition import fits, label_of
 from measure import measured, why
 from samples import compared, described
+
+# Of crackstats, beside what is measured: cracks under loads at the end of which grains still moved, and all.
+MOVING = [SimpleNamespace(path=path, scale=1) for path in ("mean.unsettled.cracks", "mean.cracks.total")]
 
 
 def read_runs(plan, folder, stale=()):
@@ -29,8 +33,11 @@ def read_runs(plan, folder, stale=()):
         results, missing = {}, ""
         for kind in kinds:
             path, mine = made[kind].path, [m for m in study.measures if m.kind == kind]
+            more = MOVING if kind == "crackstats" else []
             if path not in cache:
-                cache[path] = measured(os.path.join(folder, path), mine) if path not in stale else None
+                cache[path] = measured(os.path.join(folder, path), mine + more) if path not in stale else None
+            if more and cache[path]:
+                line["moving"] = cache[path][len(mine):]
             missing = missing or ("" if cache[path] else path)
             results.update(zip((m.name for m in mine), cache[path] or [None] * len(mine)))
         line.update({m.name: results[m.name] for m in study.measures})
@@ -57,11 +64,11 @@ def text_of(value):
 
 def write_runs(rows, study, folder):
     """runs.tsv and runs.json, a row a run."""
-    names = list(dict.fromkeys(name for line in rows for name in line if name != "artifacts"))
+    names = list(dict.fromkeys(name for line in rows for name in line if name not in ("artifacts", "moving")))
     names = [n for n in names if n not in ("status", "why")] + ["status", "why"]
     lines = ["\t".join(names)] + ["\t".join(text_of(line.get(name)) for name in names) for line in rows]
     save(folder, "runs.tsv", "".join(f"{line}\n" for line in lines))
-    save(folder, "runs.json", json.dumps({"study": study.name, "runs": rows}, indent=1) + "\n")
+    save(folder, "runs.json", json.dumps({"study": study.name, "runs": [{k: v for k, v in line.items() if k != "moving"} for line in rows]}, indent=1) + "\n")
 
 
 def save(folder, name, text):
@@ -88,7 +95,15 @@ def summarise(rows, study):
                        "measures": {m.name: described(values_of(m, mine), confidence) for m in study.measures},
                        "reference": {r["measure"]: r["value"] for r in study.said.get("reference", []) if fits(values, r.get("at", {}))}})
     tests = [test for said in study.said.get("compare", []) for test in comparisons(said, study, by_point)]
-    return {"study": study.name, "confidence": confidence, "points": points, "tests": tests}
+    return {"study": study.name, "confidence": confidence, "points": points, "tests": tests, **moving(rows)}
+
+
+def moving(rows):
+    """How many runs broke bonds under loads at the end of which grains still moved, and the share of these bonds."""
+    known = list({line["artifacts"]["crackstats"]: line["moving"] for line in rows
+                  if line["status"] == "done" and None not in line.get("moving", [None])}.values())
+    under, total = map(sum, zip(*known)) if known else (0, 0)
+    return {"moving": {"runs": sum(m > 0 for m, _ in known), "of": len(known), "share": under / total}} if under else {}
 
 
 def comparisons(said, study, by_point):
@@ -161,6 +176,10 @@ def markdown(summary, study):
     if any(values["sd"] is not None for point in summary["points"] for values in point["measures"].values()):
         yield from ["", f"Mean ± standard deviation ({100 * summary['confidence']:g} % interval of the mean)"
                     + (" [published]." if any(point["reference"] for point in summary["points"]) else ".")]
+    if summary.get("moving"):
+        found = summary["moving"]
+        yield from ["", f"In {found['runs']} of {found['of']} runs grains still moved at the end of loads; {100 * found['share']:.3g} % of all "
+                    "broken bonds broke under these. Do as many break with twice the dem-replay.cycles and most_cycles?"]
     if summary["tests"]:
         yield from ["", *tests_table(summary, study)]
 
