@@ -296,6 +296,10 @@ for title, position, radius in [("all digits", x, r), ("a lattice of unequal gra
                                 ("grains far apart", np.rint(30 * x / 1e-7) * 1e-7, r)]:
     ok("rounded" not in [f["name"] for f in check(text("fine", position, radius))[1]["findings"]], f"{title}: no note")
 
+for scale, named in (1e2, False), (1e4, True), (1e6, False):
+    said = {f["name"]: f["text"] for f in check(text("units", scale * x, scale * r))[1]["findings"]}.get("units", "")
+    ok(("centimetres (1e-2: " in said) == named, f"grains of {scale * 5e-5:g}: centimetres are named where they make grains", said)
+
 # ---- round bodies --------------------------------------------------------------------------
 
 # Cut out of a lattice wider than they: what their box leaves empty is not a tenth far from grains.

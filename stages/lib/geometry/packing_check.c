@@ -52,7 +52,8 @@ int digits_of_origin(const struct packing_facts *facts)
 // ---- one after the other ------------------------------------------------------------
 
 // Powers of 1000, because files are in millimetres, micrometres or nanometres. The
-// largest of these that makes grains of the numbers is named, and the next.
+// largest of these that makes grains of the numbers is named, and the next; and
+// centimetres (LIGGGHTS' cgs), where these make grains.
 static void judge_units(const struct packing_facts *facts, struct findings *findings)
 {
     static const char *const unit[] = {"milli", "micro", "nano"};
@@ -70,13 +71,17 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
     if (k < 3)
         snprintf(next, sizeof next, " or in %smetres (1e-%d: %g m)", unit[k],
                  3 * (k + 1), facts->median * pow(1e-3, k + 1));
+    char centi[60] = "";
+    if (facts->median * 1e-2 <= LARGEST_RADIUS)
+        snprintf(centi, sizeof centi, ", centimetres (1e-2: %g m)",
+                 facts->median * 1e-2);
     if (facts->median > LARGEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, and liquid holds no grains beyond a "
                     "centimetre: lengths in %smetres (pack.import.scale=1e-%d: %g "
-                    "m)%s?",
+                    "m)%s%s?",
                     facts->median, unit[k - 1], 3 * k, facts->median * pow(1e-3, k),
-                    next);
+                    centi, next);
     if (facts->median < SMALLEST_RADIUS)
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, less than molecules of liquid have: "
