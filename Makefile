@@ -28,6 +28,13 @@ PREFIX ?= /usr/local
 DESTDIR ?=
 RUNS ?= $(BUILD)/runs
 
+# Of a folder in RUNS: only what stands on the command line. The environment may have a NAME of its
+# own; in the Windows Subsystem for Linux it is that of the machine.
+ifeq ($(origin NAME),environment)
+NAME :=
+endif
+NAME ?=
+
 # Names of files go to make's rules and its shell as they are: one that either would take apart or
 # run is refused before it is used.
 hash := \#

@@ -3,6 +3,7 @@
 #
 #     make run SCENE=samples/x.json    ->  build/runs/x/crackstats.json
 #     make report SCENE=samples/x.json ->  build/runs/x/report.html, a page that shows the run
+#     make run SCENE=samples/x.json NAME=y  ->  the same in build/runs/y
 #     make simulate SCENE=samples/drum.json  ->  build/runs/drum/motion.h5
 #     make demo                        ->  the sample in both drying limits, for several draws of
 #                                          the throat radii, pages and pictures of the first, and
@@ -70,7 +71,7 @@ headline = printf '%s' '$2' && jq -rf pipelines/run/headline.jq --arg draws 'dra
 
 .PHONY: run report simulate
 ifneq ($(SCENE),)
-run_folder := $(RUNS)/$(basename $(notdir $(SCENE)))
+run_folder := $(RUNS)/$(or $(strip $(NAME)),$(basename $(notdir $(SCENE))))
 $(call crack_network,$(run_folder),$(SCENE))
 $(call crack_history,$(run_folder),$(SCENE),$(run_folder)/network.h5,)
 run_page := $(run_folder)/report.html
@@ -121,7 +122,7 @@ endif
 DEMO_SEEDS ?=# of the throat radii; pictures show the first [eight from the scene's own on]
 
 demo_scene := $(or $(SCENE),samples/stiff-5x5x10.json)
-demo_folder := $(RUNS)/$(basename $(notdir $(demo_scene)))
+demo_folder := $(RUNS)/$(or $(strip $(NAME)),$(basename $(notdir $(demo_scene))))
 demo_limits := inviscid immobile
 demo_picture := $(if $(wildcard pipelines/run/picture),$(demo_folder)/picture.svg)
 

@@ -10,7 +10,6 @@
 STUDY ?=
 SEEDS ?=# in place of the study's own
 SET ?=# STAGE.KEY=VALUE, for all runs
-NAME ?=# of the folder, in place of the study's
 MOST_RUNS ?=
 
 study_words = --runs=$(call quoted,$(RUNS)) $(if $(strip $(SEEDS)),--seeds=$(call quoted,$(strip $(SEEDS)))) $(foreach \

@@ -378,6 +378,12 @@ for name in ../x .. x/y; do
     is "NAME=$name would lie elsewhere, and is refused" 1 \
         "$(make study NAME=$name 2>&1 >/dev/null | grep -c 'must be the name of a folder, without /')"
 done
+is 'NAME=other is the folder of a run' build/runs/other/packing.h5 \
+    "$(make -n run SCENE=$scene NAME=other 2>&1 | grep -o 'build/runs/[a-z]*/packing.h5' | sort -u)"
+is 'a NAME of the environment is not' build/runs/$(basename $scene .json)/packing.h5 \
+    "$(NAME=host make -nB run SCENE=$scene 2>&1 | grep -o 'build/runs/[-a-z0-9]*/packing.h5' | sort -u)"
+is 'nor that of a study, as is one on the command line' '0 1' \
+    "$(NAME=host make -n study STUDY=x.json 2>&1 | grep -c -e '--name=.*host') $(make -n study STUDY=x.json NAME=host | grep -c -e '--name=.*host')"
 is 'grains that are not there' 'IMPORT=nowhere.txt: no such file.' \
     "$(make run SCENE=$scene IMPORT=nowhere.txt 2>&1 | grep -o 'IMPORT=.*file[.]')"
 is 'in the environment as well' 2 \
