@@ -2,6 +2,7 @@
 """What a study ends in beside its tables: programs that draw more, the page of its runs, and what is
 said on the terminal."""
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -89,8 +90,18 @@ def write_page(plan, rows, folder):
     return ["study.html"]
 
 
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.]*\w)")
+
+
+def spanned(texts):
+    """One line for lines that differ in numbers alone: from the least to the largest of each."""
+    columns = iter([min(column, key=float) if len(set(map(float, column))) == 1
+                    else f"{min(column, key=float)} to {max(column, key=float)}" for column in zip(*map(NUMBER.findall, texts))])
+    return NUMBER.sub(lambda _: next(columns), texts[0])
+
+
 def notes(plan, folder):
-    """What stages said of artifacts of the plan, each once, and of how many."""
+    """What stages said of artifacts of the plan, once for lines that differ in numbers alone, and of how many."""
     said = {}
     try:
         with open(os.path.join(folder, ".study/notes"), encoding="utf-8", errors="replace") as file:
@@ -100,8 +111,12 @@ def notes(plan, folder):
                     said.setdefault(text, set()).add(path)
     except OSError:
         pass
-    for text, paths in said.items():
-        print(f"{len(paths)} times: {text}" if len(paths) > 1 else text, file=sys.stderr)
+    alike = {}
+    for text in said:
+        alike.setdefault(NUMBER.sub("#", text), []).append(text)
+    for texts in alike.values():
+        paths = set().union(*(said[text] for text in texts))
+        print((f"{len(paths)} times: " if len(paths) > 1 else "") + spanned(texts), file=sys.stderr)
 
 
 def tell_empty(summary, rows):

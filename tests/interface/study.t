@@ -85,6 +85,18 @@ said = study("table", "small.json")[2] + open(at("runs", "small", "summary.md"),
 ok(said.count("(80 % interval of the mean)") == 2 and "95 %" not in said, "also with another confidence", said)
 write("small.json", small)
 study("table", "small.json")
+with open(at("runs/small/runs.json"), encoding="utf-8") as lines:
+    responses = [r["artifacts"]["response"] for r in json.load(lines)["runs"]]
+notes = at("runs/small/.study/notes")
+kept = read(notes) if os.path.exists(notes) else b""
+with open(notes, "w", encoding="utf-8") as file:
+    for k, path in enumerate(responses):
+        file.write(f"{path} dem-replay: {9 + 4 * k} of 36 grains left, by 1e-{3 - k % 2} m\n{path} dem-replay: 7 of 36 stayed\n")
+said = study("table", "small.json")[3].splitlines()
+ok(said == ["8 times: dem-replay: 9 to 37 of 36 grains left, by 1e-3 to 1e-2 m", "8 times: dem-replay: 7 of 36 stayed"],
+   "lines that differ in numbers alone are one, with the least and the largest", said)
+with open(notes, "wb") as file:
+    file.write(kept)
 rows = table("small")
 ok([r["status"] for r in rows] == ["done"] * 8, "a row a run")
 source, chain = None, [("pack", []), ("tessellate", []), ("merge-nodes", []), ("dry", ["liquid=immobile", "throat_radius.seed=2"]),
