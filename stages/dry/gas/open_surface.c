@@ -2,9 +2,10 @@
 // The region of the wall that is open to the air, as a polygon in the plane of the
 // wall. Its sides are the edges that belong to one face only: each edge of each face
 // is listed with the direction in which the face lies to its left, sorted by its two
-// nodes, and those that occur twice with opposite directions cancel. Coordinates are
-// in units of UNIT from the lower corner; axes follow the wall's normal cyclically, x
-// -> (y, z). Where the faces cover the whole rectangle there are no sides at all.
+// nodes, and those that occur twice with opposite directions cancel. Where the box
+// repeats, the faces are the region's parts. Coordinates are in units of UNIT from the
+// lower corner; axes follow the wall's normal cyclically, x -> (y, z). Where the faces
+// cover the whole rectangle there are no sides at all.
 #include "open_surface.h"
 
 #include "basics/memory.h"
@@ -67,6 +68,7 @@ struct planar place_on_face(const struct open_surface *face, int node)
 struct edge {
     int32_t low, high; // its nodes
     bool forward;      // from the lower to the higher
+    bool is_last;      // of its face
     struct planar at[2];
 };
 
@@ -90,7 +92,8 @@ static void add_edges(const struct open_surface *face, int f, struct edges *edge
                  (a.y - origin.y) * (b.x - origin.x)) /
                 2;
     }
-    for (int64_t k = begin; k < end; k++) {
+    for (int64_t j = begin; j < end; j++) { // counter-clockwise
+        const int64_t k = area > 0 ? j : begin + end - 1 - j;
         const int64_t next = k + 1 < end ? k + 1 : begin;
         const int64_t from = area > 0 ? k : next, to = area > 0 ? next : k;
         const int32_t a = network->face_nodes[from], b = network->face_nodes[to];
@@ -99,6 +102,7 @@ static void add_edges(const struct open_surface *face, int f, struct edges *edge
             (struct edge){a < b ? a : b,
                           a < b ? b : a,
                           a < b,
+                          j + 1 == end,
                           {place_of(face, face_corner(network, from)),
                            place_of(face, face_corner(network, to))}};
     }
@@ -119,12 +123,13 @@ static bool near_end(double x, double y, double size)
            fmax(fabs(x - size), fabs(y - size)) < 1e-9 * size;
 }
 
-// Where the rectangle is periodic along one axis, sides at its ends along the other
-// close no loop: the rectangle itself bounds the region there.
+// Where the rectangle is periodic along one axis only, sides at its ends along the
+// other bound nothing: there the rectangle itself ends.
 static bool lies_at_end(const struct rectangle *whole, const struct planar at[2])
 {
-    if (whole->periodic_x && near_end(at[0].y, at[1].y, whole->size.y)) return true;
-    return whole->periodic_y && near_end(at[0].x, at[1].x, whole->size.x);
+    if (whole->periodic_x == whole->periodic_y) return false;
+    return whole->periodic_x ? near_end(at[0].y, at[1].y, whole->size.y)
+                             : near_end(at[0].x, at[1].x, whole->size.x);
 }
 
 // Keeps the edges with a face on one side only.
@@ -147,6 +152,26 @@ static void keep_sides(const struct edges *edges, struct planar_region *region)
     }
 }
 
+// Takes the faces, whose edges are listed one face after the other, as parts.
+static void take_parts(const struct edges *edges, struct planar_region *region)
+{
+    region->corner = NEW_ARRAY(struct planar, edges->n);
+    region->part_offset = NEW_ARRAY(int, edges->n + 1);
+    region->extent = allocate((size_t)edges->n, sizeof *region->extent);
+    struct planar lower = {INFINITY, INFINITY}, upper = {-INFINITY, -INFINITY};
+    for (int k = 0; k < edges->n; k++) {
+        const struct planar at = region->corner[k] = edges->edge[k].at[0];
+        lower = (struct planar){fmin(lower.x, at.x), fmin(lower.y, at.y)};
+        upper = (struct planar){fmax(upper.x, at.x), fmax(upper.y, at.y)};
+        if (!edges->edge[k].is_last) continue;
+        region->extent[region->n_part][0] = lower;
+        region->extent[region->n_part][1] = upper;
+        region->part_offset[++region->n_part] = k + 1;
+        lower = (struct planar){INFINITY, INFINITY};
+        upper = (struct planar){-INFINITY, -INFINITY};
+    }
+}
+
 // Leaves the region the whole rectangle where the faces cover it, or there are none.
 static void find_sides(struct open_surface *face)
 {
@@ -157,6 +182,8 @@ static void find_sides(struct open_surface *face)
         if (network->face_particles[f][1] == -1 - face->wall)
             add_edges(face, f, &edges);
     if (edges.n > 0 && edges.area < (1 - 1e-9) * size.x * size.y) {
+        if (face->region.rectangle.periodic_x || face->region.rectangle.periodic_y)
+            take_parts(&edges, &face->region);
         qsort(edges.edge, (size_t)edges.n, sizeof *edges.edge, compare_edges);
         keep_sides(&edges, &face->region);
     }

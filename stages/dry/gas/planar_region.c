@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Areas and lengths inside a polygonal region, without building the intersection. The
-// region is the sum of the triangles (origin, side[0], side[1]) over all its sides,
-// with a negative sign where the side is seen clockwise. So
+// region is the sum of the triangles (origin, side[0], side[1]) over all its sides, or
+// over those of all its parts, with a negative sign where the side is seen clockwise.
+// So
 //     area(polygon in region) = sum of sign * area(polygon in triangle),
 // and a convex polygon is clipped by the three lines of each triangle (Sutherland and
 // Hodgman 1974). A line is split where it crosses sides, and each part counts if its
-// middle is inside. Sides are taken at their periodic image nearest to the origin,
-// which is right for polygons smaller than half the rectangle.
+// middle is inside. Where the rectangle repeats, each part is seen in all repetitions
+// that may reach the polygon, which is no larger than the rectangle. It moves as a
+// whole: sides taken one by one at their nearest images would close no loop.
 #include "planar_region.h"
 
 #include "basics/memory.h"
@@ -31,8 +33,8 @@ static double nearest_image(double apart, double size, bool periodic)
 }
 
 // Side K seen from ORIGIN, the nearest of its images.
-static void find_side(const struct planar_region *region, int k, struct planar origin,
-                      struct planar side[2])
+static void nearest_side(const struct planar_region *region, int k,
+                         struct planar origin, struct planar side[2])
 {
     const struct rectangle *whole = &region->rectangle;
     for (int end = 0; end < 2; end++)
@@ -44,12 +46,81 @@ static void find_side(const struct planar_region *region, int k, struct planar o
         side[end] = difference(side[end], moved);
 }
 
-// The winding number far from all sides: 1 where the loops surround what is missing.
-static int far_away(const struct planar_region *region)
+// ---- sides that close loops, one after the other ------------------------------------
+
+// Begin with {.region, .origin, .reach}. Without parts these are the sides, else those
+// of each part in each repetition in which it comes nearer to ORIGIN than REACH, along
+// both axes.
+struct walk {
+    const struct planar_region *region;
+    struct planar origin;
+    double reach;
+    int side, part, image;
+    struct planar shift;
+};
+
+enum { IMAGES = 9 }; // the repetition in which a part is nearest, and those around it
+
+// How far what reaches from LOWER to UPPER moves to be seen in repetition IMAGE (-1, 0,
+// 1), counted from where its middle is nearest to 0. False: it is too far off there.
+static bool find_shift(double lower, double upper, double size, bool periodic,
+                       int image, double reach, double *shift)
 {
-    const struct rectangle *whole = &region->rectangle;
-    return region->n_side == 0 || whole->periodic_x || whole->periodic_y;
+    const double middle = (lower + upper) / 2, far = (upper - lower) / 2 + reach;
+    if (image && (!periodic || far < size / 2)) return false;
+    *shift = periodic ? size * (image - round(middle / size)) : 0;
+    return fabs(middle + *shift) <= far;
 }
+
+// Whether the walk's part counts in the walk's image.
+static bool reaches(struct walk *walk)
+{
+    const struct rectangle *whole = &walk->region->rectangle;
+    const struct planar *extent = walk->region->extent[walk->part];
+    const struct planar lower = difference(extent[0], walk->origin);
+    const struct planar upper = difference(extent[1], walk->origin);
+    const int x = (walk->image + 1) % 3 - 1,
+              y = walk->image / 3 == 2 ? -1 : walk->image / 3;
+    return find_shift(lower.x, upper.x, whole->size.x, whole->periodic_x, x,
+                      walk->reach, &walk->shift.x) &&
+           find_shift(lower.y, upper.y, whole->size.y, whole->periodic_y, y,
+                      walk->reach, &walk->shift.y);
+}
+
+// Goes on to the next part, or its next image, that counts. False: there is none.
+static bool find_part(struct walk *walk)
+{
+    for (; walk->part < walk->region->n_part; walk->part++, walk->image = 0)
+        for (; walk->image < IMAGES; walk->image++)
+            if (reaches(walk)) return true;
+    return false;
+}
+
+// The next SIDE, seen from the origin. False: there is none.
+static bool next_side(struct walk *walk, struct planar side[2])
+{
+    const struct planar_region *region = walk->region;
+    if (region->n_part == 0) {
+        if (walk->side == region->n_side) return false;
+        for (int end = 0; end < 2; end++)
+            side[end] = difference(region->side[walk->side][end], walk->origin);
+        walk->side++;
+        return true;
+    }
+    if (walk->side == 0 && !find_part(walk)) return false;
+    const int begin = region->part_offset[walk->part];
+    const int n = region->part_offset[walk->part + 1] - begin;
+    for (int end = 0; end < 2; end++) {
+        const struct planar at =
+            difference(region->corner[begin + (walk->side + end) % n], walk->origin);
+        side[end] = (struct planar){at.x + walk->shift.x, at.y + walk->shift.y};
+    }
+    walk->side = (walk->side + 1) % n;
+    walk->image += walk->side == 0;
+    return true;
+}
+
+// ---- polygons and lines -------------------------------------------------------------
 
 static double polygon_area(const struct planar *corner, int n)
 {
@@ -96,11 +167,13 @@ static double area_in_triangle(const struct planar *corner, int n, struct planar
 double area_in_region(const struct planar_region *region, struct planar origin,
                       const struct planar *corner, int n)
 {
-    double area = far_away(region) ? polygon_area(corner, n) : 0;
+    if (region->n_side == 0) return polygon_area(corner, n);
+    double area = 0;
     struct planar *scratch = NEW_ARRAY(struct planar, 2 * (n + 3));
-    for (int k = 0; k < region->n_side; k++) {
-        struct planar side[2];
-        find_side(region, k, origin, side);
+    struct walk walk = {.region = region, .origin = origin};
+    for (int k = 0; k < n; k++)
+        walk.reach = fmax(walk.reach, hypot(corner[k].x, corner[k].y));
+    for (struct planar side[2]; next_side(&walk, side);) {
         const bool forward = cross_product(side[0], side[1]) > 0;
         area += (forward ? 1 : -1) *
                 area_in_triangle(corner, n, side[!forward], side[forward], scratch);
@@ -114,10 +187,10 @@ double area_in_region(const struct planar_region *region, struct planar origin,
 static bool is_in_region(const struct planar_region *region, struct planar origin,
                          struct planar at)
 {
-    int inside = far_away(region);
-    for (int k = 0; k < region->n_side; k++) {
-        struct planar side[2];
-        find_side(region, k, origin, side);
+    if (region->n_side == 0) return true;
+    int inside = 0;
+    struct walk walk = {.region = region, .origin = origin, .reach = hypot(at.x, at.y)};
+    for (struct planar side[2]; next_side(&walk, side);) {
         const struct planar a = difference(side[0], at), b = difference(side[1], at);
         if ((a.y > 0) == (b.y > 0)) continue;
         const bool upwards = b.y > 0;
@@ -130,20 +203,25 @@ double length_in_region(const struct planar_region *region, struct planar origin
                         struct planar from, struct planar to)
 {
     const struct planar along = difference(to, from);
-    double *crossing = NEW_ARRAY(double, region->n_side + 2);
-    int n = 0;
+    double *crossing = NULL;
+    int n = 0, capacity = 0;
+    GROW_ARRAY(crossing, n, capacity);
     crossing[n++] = 0;
-    for (int k = 0; k < region->n_side; k++) {
-        struct planar side[2];
-        find_side(region, k, origin, side);
+    struct walk walk = {.region = region,
+                        .origin = origin,
+                        .reach = fmax(hypot(from.x, from.y), hypot(to.x, to.y))};
+    for (struct planar side[2]; next_side(&walk, side);) {
         const double a = cross_product(along, difference(side[0], from));
         const double b = cross_product(along, difference(side[1], from));
         if ((a > 0) == (b > 0)) continue;
         const struct planar way = difference(side[1], side[0]);
         const double t =
             cross_product(difference(side[0], from), way) / cross_product(along, way);
-        if (t > 0 && t < 1) crossing[n++] = t;
+        if (!(t > 0 && t < 1)) continue;
+        GROW_ARRAY(crossing, n, capacity);
+        crossing[n++] = t;
     }
+    GROW_ARRAY(crossing, n, capacity);
     crossing[n++] = 1;
     qsort(crossing, (size_t)n, sizeof *crossing, rising_doubles);
     double share = 0;
@@ -161,7 +239,7 @@ bool region_holds(const struct planar_region *region, struct planar origin,
 {
     for (int k = 0; k < region->n_side; k++) {
         struct planar side[2];
-        find_side(region, k, origin, side);
+        nearest_side(region, k, origin, side);
         const struct planar way = difference(side[1], side[0]);
         const double square = way.x * way.x + way.y * way.y;
         const double t = -(side[0].x * way.x + side[0].y * way.y) / square;
@@ -169,11 +247,16 @@ bool region_holds(const struct planar_region *region, struct planar origin,
         if (hypot(side[0].x + nearest * way.x, side[0].y + nearest * way.y) < distance)
             return false;
     }
-    return is_in_region(region, origin, (struct planar){0, 0});
+    // Any point of the disc tells, but one on the rim of a part might count for none.
+    return is_in_region(region, origin,
+                        (struct planar){0.309017 * distance, 0.207107 * distance});
 }
 
 void planar_region_free(struct planar_region *region)
 {
     free(region->side);
+    free(region->part_offset);
+    free(region->corner);
+    free(region->extent);
     *region = (struct planar_region){0};
 }

@@ -17,13 +17,20 @@ struct rectangle {
     bool periodic_x, periodic_y;
 };
 
-// The region lies to the left of its sides. These form closed loops: where the
-// rectangle repeats, around what is missing of it; else around what is there. It owns
-// SIDE: from [0] to [1].
+// The region lies to the left of its sides, which form closed loops around it. Where
+// the rectangle repeats they may lead around it and close nowhere: there the region is
+// also given by parts, which do not overlap. It owns its arrays.
 struct planar_region {
-    int n_side; // 0: all of the rectangle
-    struct planar (*side)[2];
+    int n_side;               // 0: all of the rectangle
+    struct planar (*side)[2]; // (n_side) from [0] to [1]; ends of the rectangle along
+                              // one axis are left out where it repeats along the other
     struct rectangle rectangle;
+
+    int n_part;            // 0 where the rectangle does not repeat
+    int *part_offset;      // (n_part + 1)
+    struct planar *corner; // corners of part p: part_offset[p] to part_offset[p + 1],
+                           // in one repetition of the rectangle
+    struct planar (*extent)[2]; // (n_part) their lowest and highest coordinates
 };
 
 // Area of the part of a convex polygon in the region. Its N corners are

@@ -255,19 +255,54 @@ TEST(holes_have_no_area)
     }
 }
 
+// Whether the square between x and x + 1, y and y + 1 of the upper wall is there.
+static bool has_square(const bool *drop, int x, int y)
+{
+    return !drop[25 + (y + 5) % 5 * 5 + (x + 5) % 5];
+}
+
+// A node has a quarter of each square at it, a link half of each beside it.
+static void check_squares(const struct boundary_layer *layer, const bool *drop)
+{
+    for (int i = 0; i < layer->n_exposed; i++) {
+        const int x = (layer->exposed[i] - 72) % 6, y = (layer->exposed[i] - 72) / 6;
+        double area = 0;
+        for (int k = 0; k < 4; k++)
+            area += has_square(drop, x - k % 2, y - k / 2) ? 0.25 : 0;
+        assert_true(fabs(layer->area[i] - area) < 1e-14);
+    }
+    for (int k = 0; k < layer->n_lateral; k++) {
+        const int a = layer->exposed[layer->lateral[k][0]] - 72;
+        const int b = layer->exposed[layer->lateral[k][1]] - 72;
+        const int x = abs(a % 6 - b % 6) == 1 ? a % 6 < b % 6 ? a % 6 : b % 6 : 4;
+        const int y = abs(a / 6 - b / 6) == 1 ? a / 6 < b / 6 ? a / 6 : b / 6 : 4;
+        const double width =
+            a / 6 == b / 6
+                ? (has_square(drop, x, a / 6) + has_square(drop, x, a / 6 - 1)) / 2.0
+                : (has_square(drop, a % 6, y) + has_square(drop, a % 6 - 1, y)) / 2.0;
+        assert_true(fabs(layer->lateral_width[k] - width) < 1e-14);
+    }
+}
+
+// Holes narrower than half of the box and wider, and those that lead around it.
 TEST(holes_in_a_face_that_repeats)
 {
-    struct network network = lattice_network(6, 6, 3, spacing);
-    network.packing.periodic[0] = 1;
-    network.packing.periodic[1] = 1;
-    bool drop[50] = {[25 + 11] = true, [25 + 12] = true};
-    drop_faces(&network, 5, drop);
-    struct boundary_layer layer =
-        make(&network, 5, &(struct boundary_form){.layers = 0});
-    assert_int_equal(layer.n_exposed, 25);
-    assert_true(fabs(total_area(&layer) - 23) < 1e-13);
-    boundary_layer_free(&layer);
-    network_free(&network);
+    for (int size = 0; size < 24; size++) {
+        const int wide = size % 5 + 1, high = size / 5 + 1;
+        struct network network = lattice_network(6, 6, 3, spacing);
+        network.packing.periodic[0] = 1;
+        network.packing.periodic[1] = 1;
+        bool drop[50] = {0};
+        for (int k = 0; k < wide * high; k++)
+            drop[25 + (2 + k / wide) % 5 * 5 + (1 + k % wide) % 5] = true;
+        drop_faces(&network, 5, drop);
+        struct boundary_layer layer =
+            make(&network, 5, &(struct boundary_form){.layers = 0});
+        assert_true(fabs(total_area(&layer) - (25 - wide * high)) < 1e-13);
+        check_squares(&layer, drop);
+        boundary_layer_free(&layer);
+        network_free(&network);
+    }
 }
 
 // Nodes without liquid throats have no column, and their area goes to those nearest.
