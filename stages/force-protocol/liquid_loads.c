@@ -8,9 +8,10 @@
 // with S the saturation of the throat, linear in time within a step of the drying, V_r
 // what it leaves in rings and s their saturation, below 1 only where S is 0.
 // The suction is uniform [K 5.3], of each cluster (the least entry pressure less rho g
-// z among its menisci), or interpolated from the pressure field of viscous liquid.
-// With K's uniform suction loads are continuous in time; clusters make them jump when
-// a throat empties, so the end of a step and the beginning of the next are told apart.
+// z among its menisci; one cluster where films without resistance join all liquid), or
+// interpolated from the pressure field of viscous liquid. With K's uniform suction
+// loads are continuous in time; clusters make them jump when a throat empties, so the
+// end of a step and the beginning of the next are told apart.
 //
 // `before` and `after` are S at the present step and the next; `share` is where between
 // them the time is. They are replayed from the changes of the drying, forwards only. A
@@ -46,6 +47,13 @@ static bool holds_liquid(const struct liquid_loads *liquid, int throat)
 
 // --- clusters ----------------------------------------------------------------------
 
+// Whether THROAT can hold clusters together now.
+static bool joins_liquid(const struct liquid_loads *liquid, int throat)
+{
+    return liquid->law.joined ? liquid->network->throat_kind[throat] == THROAT_NETWORK
+                              : holds_liquid(liquid, throat);
+}
+
 static void unite_at_nodes(const struct liquid_loads *liquid, int *set)
 {
     const struct network *network = liquid->network;
@@ -53,9 +61,9 @@ static void unite_at_nodes(const struct liquid_loads *liquid, int *set)
     for (int i = 0; i < network->n_node; i++)
         first[i] = -1;
     for (int t = 0; t < network->n_throat; t++)
-        for (int end = 0; end < 2 && holds_liquid(liquid, t); end++) {
+        for (int end = 0; end < 2 && joins_liquid(liquid, t); end++) {
             const int node = network->throat_nodes[t][end];
-            if (liquid->gas[node]) continue;
+            if (liquid->gas[node] && !liquid->law.joined) continue;
             if (first[node] >= 0)
                 unite_sets(set, first[node], t);
             else
@@ -71,11 +79,19 @@ int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster)
     for (int t = 0; t < n; t++)
         set[t] = t;
     unite_at_nodes(liquid, set);
+    int *lowest = NEW_ARRAY(int, n); // with liquid, of the set so named
+    for (int t = 0; t < n; t++)
+        lowest[t] = -1;
     int count = 0;
     for (int t = 0; t < n; t++) {
-        cluster[t] = holds_liquid(liquid, t) ? set_root(set, t) : -1;
+        cluster[t] = -1;
+        if (!holds_liquid(liquid, t)) continue;
+        const int root = set_root(set, t);
+        if (lowest[root] < 0) lowest[root] = t;
+        cluster[t] = lowest[root];
         count += cluster[t] == t;
     }
+    free(lowest);
     free(set);
     return count;
 }

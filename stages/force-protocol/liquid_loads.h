@@ -21,7 +21,8 @@ enum suction_rule {
     // In each cluster of liquid that of its widest throat with a meniscus, which gas
     // enters next: its meniscus is as curved as it can be, and the whole cluster has
     // the same pressure. With weight, the same potential: then gas enters next where
-    // the suction less rho g z is least.
+    // the suction less rho g z is least. Where films join all liquid (dry.rings=joined)
+    // a cluster is what was one when all throats were full.
     SUCTION_CLUSTERS,
     // By the pressures of viscous liquid at the nodes: a throat has the mean of its
     // ends that are in liquid, or without one that of its own meniscus; linear in time
@@ -31,6 +32,7 @@ enum suction_rule {
 
 struct suction_law {
     enum suction_rule rule;
+    bool joined;         // films join all liquid
     double uniform;      // Pa, of a throat of mean radius
     double meniscus;     // 2 sigma cos(theta), N/m: suction times radius
     double contact_line; // sigma sin(theta), N/m
@@ -98,5 +100,6 @@ double liquid_loads_left(const struct liquid_loads *liquid, int throat);
 double field_error(const struct liquid_loads *liquid);
 
 // Sets CLUSTER (n_throat) to the lowest throat of each throat's cluster, -1: no liquid.
-// Throats join at nodes where none has emptied. Returns the number of clusters.
+// Throats join at nodes where none has emptied, or at all if films join them. Returns
+// the number of clusters.
 int liquid_loads_clusters(const struct liquid_loads *liquid, int *cluster);

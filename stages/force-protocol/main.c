@@ -44,6 +44,7 @@
 #include <omp.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum open_surface { OPEN_SURFACE_IDLE, OPEN_SURFACE_PULLS };
 
@@ -192,16 +193,33 @@ static struct suction_law find_law(const struct network *network,
     return law;
 }
 
-// The gravity with which the drying was computed; 0 if it does not say. From its
-// parameters, since the artifact has no number of its own for it.
-static double gravity_of_drying(const struct artifact *input)
+// The parameters of the drying, of what the artifact has no number of its own for; NULL
+// if it does not say. The caller gives them back with json_decref.
+static json_t *parameters_of_drying(const struct artifact *input)
 {
     char *text = artifact_get_text(input, "parameters");
     json_t *parameters = text ? json_loads(text, 0, NULL) : NULL;
+    free(text);
+    return parameters;
+}
+
+// The gravity with which the drying was computed; 0 if it does not say.
+static double gravity_of_drying(const struct artifact *input)
+{
+    json_t *parameters = parameters_of_drying(input);
     const double gravity = json_number_value(json_object_get(parameters, "gravity"));
     json_decref(parameters);
-    free(text);
     return gravity > 0 ? gravity : 0;
+}
+
+// Whether films without resistance joined all liquid in the drying.
+static bool films_joined(const struct artifact *input)
+{
+    json_t *parameters = parameters_of_drying(input);
+    const char *rings = json_string_value(json_object_get(parameters, "rings"));
+    const bool joined = rings && !strcmp(rings, "joined");
+    json_decref(parameters);
+    return joined;
 }
 
 // The density follows from the mass of liquid and the volume it filled, so that it is
@@ -490,6 +508,7 @@ int main(int argc, char **argv)
     char difference[300], model[1400];
     complete_liquid(&parameters, input, difference, sizeof difference);
     struct suction_law law = find_law(&network, &parameters, input->path);
+    law.joined = films_joined(input);
     if (isnan(parameters.gravity)) parameters.gravity = gravity_of_drying(input);
     if (*difference && !invocation.quiet) report("%s", difference);
 

@@ -96,6 +96,20 @@ for threads in "1", "2":
     run("force-protocol", "-q", "--threads", threads, *sets("rings.left=drying", "largest_change=0.1"), at("drying"), "-o", at("t" + threads))
 ok(filecmp.cmp(at("t1"), at("t2"), shallow=False), "one thread and two give the same bytes")
 
+# Films without resistance join all liquid: one suction, of the throat that empties next, wherever gas parts it.
+force = {}
+for rule in "uniform", "clusters":
+    run("force-protocol", "-q", *sets(f"pressure={rule}", "steps=30", "balanced=false"), at("drying"), "-o", at("forces"))
+    with h5py.File(at("forces")) as file:
+        force[rule], time = file["force"][:], file["time"][:]
+with h5py.File(at("drying")) as file:
+    radius, kind, throat, when = (file[name][:] for name in ("throats/radius", "throats/kind", "events/throat", "events/time"))
+following = np.searchsorted(when, time, side="right")
+wet = following < len(when)
+curved = radius[kind == 0].mean() / radius[throat[following[wet]]]
+off = abs(force["clusters"][wet] - curved[:, None, None] * force["uniform"][wet]).max() / abs(force["clusters"]).max()
+ok(wet.sum() > 5 and off < 1e-12, "joined: all liquid has the suction of the throat that empties next", (wet.sum(), off))
+
 dried(at("packing"))
 refused("a drying without rings is refused", "rings.left=drying needs it: dry with rings=isolated, joined or films",
         "force-protocol", "-q", *sets("rings.left=drying"), at("drying"))
