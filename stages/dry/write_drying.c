@@ -72,6 +72,12 @@ static void put_moments(struct artifact *artifact, const char *group,
     free(saturation);
 }
 
+static enum liquid_paths paths_of(const struct drying_conditions *conditions)
+{
+    if (conditions->liquid == LIQUID_IMMOBILE) return PATHS_THROATS;
+    return conditions->rings == RINGS_JOINED ? PATHS_FILMS : PATHS_PARTED_BY_GAS;
+}
+
 // At nine levels, whatever was asked for as snapshots.
 static void put_profiles(struct artifact *artifact, const struct network *network,
                          const struct drying_history *history,
@@ -80,8 +86,8 @@ static void put_profiles(struct artifact *artifact, const struct network *networ
     static const double level[] = {0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.1};
     const int n_level = sizeof level / sizeof *level;
     struct profiles profiles =
-        profiles_init(network, history, conditions->open_walls,
-                      conditions->liquid != LIQUID_IMMOBILE, n_level, level, false);
+        profiles_init(network, history, conditions->open_walls, paths_of(conditions),
+                      n_level, level, false);
     put_moments(artifact, "profiles", history, &profiles);
     artifact_put(artifact, "/profiles/depth", profiles.depth, PROFILE_SLICES);
     artifact_put_table(artifact, "/profiles/slice_saturation", profiles.slice, n_level,
@@ -98,9 +104,9 @@ static void put_snapshots(struct artifact *artifact, const struct network *netwo
                           const struct drying_history *history,
                           const struct drying_conditions *conditions)
 {
-    struct profiles profiles = profiles_init(
-        network, history, conditions->open_walls, conditions->liquid != LIQUID_IMMOBILE,
-        conditions->n_snapshot, conditions->snapshot, true);
+    struct profiles profiles =
+        profiles_init(network, history, conditions->open_walls, paths_of(conditions),
+                      conditions->n_snapshot, conditions->snapshot, true);
     put_moments(artifact, "snapshots", history, &profiles);
     artifact_put_table(artifact, "/snapshots/throat_saturation",
                        profiles.throat_saturation, profiles.n_level, network->n_throat);

@@ -2,7 +2,7 @@
 // Replays the changes of a history once, stops at each level, and measures the liquid:
 // saturation by slices over the depth, of the surface, and the sizes of clusters.
 // Clusters are found with a disjoint-set forest: liquid throats at a node belong
-// together unless gas has entered the node.
+// together unless gas has entered the node, or as enum liquid_paths says.
 //
 //     slice[s]  = sum of liquid / sum of V,   throats whose middles lie in slice s,
 //     liquid    = S V;  with rings, of which a throat leaves `left`,
@@ -31,7 +31,7 @@
 struct snapshot {
     const struct network *network;
     unsigned open_walls;
-    bool gas_parts;
+    enum liquid_paths paths;
     double *saturation;          // (n_throat) now
     int *slice;                  // (n_throat) -1: holds no liquid at any time
     double full[PROFILE_SLICES]; // m3 of throats in each slice
@@ -78,11 +78,11 @@ static void take_rings(struct snapshot *snapshot, const struct ring_history *rin
 
 // Full to begin with; changes of step 0 take off what was missing at the start.
 static struct snapshot snapshot_init(const struct network *network, unsigned open_walls,
-                                     bool gas_parts)
+                                     enum liquid_paths paths)
 {
     struct snapshot snapshot = {.network = network,
                                 .open_walls = open_walls,
-                                .gas_parts = gas_parts,
+                                .paths = paths,
                                 .saturation = NEW_ARRAY(double, network->n_throat),
                                 .slice = NEW_ARRAY(int, network->n_throat),
                                 .parent = NEW_ARRAY(int, network->n_throat),
@@ -148,7 +148,7 @@ static void cut_profile(const struct snapshot *snapshot, double *slice, double *
 // Union-find without ranks: the root of the later throat wins; only sizes are wanted.
 static void join(struct snapshot *snapshot, int throat, int node)
 {
-    if (snapshot->gas_parts && snapshot->gas[node]) return;
+    if (snapshot->paths == PATHS_PARTED_BY_GAS && snapshot->gas[node]) return;
     if (snapshot->first[node] < 0) {
         snapshot->first[node] = throat;
         return;
@@ -160,8 +160,15 @@ static void join(struct snapshot *snapshot, int throat, int node)
     snapshot->size[a] += snapshot->size[b];
 }
 
-// Liquid throats are connected through nodes that gas has not entered. Class k has the
-// sizes from 2^k to 2^(k+1) - 1: the logarithm of a size by its highest bit.
+// Whether THROAT may hold a cluster together.
+static bool is_path(const struct snapshot *snapshot, int throat)
+{
+    return snapshot->paths == PATHS_FILMS ? snapshot->slice[throat] >= 0
+                                          : snapshot->saturation[throat] > 0;
+}
+
+// Sizes count throats with liquid. Class k has the sizes from 2^k to 2^(k+1) - 1: the
+// logarithm of a size by its highest bit.
 static void count_clusters(struct snapshot *snapshot, int32_t *count)
 {
     const struct network *network = snapshot->network;
@@ -171,16 +178,16 @@ static void count_clusters(struct snapshot *snapshot, int32_t *count)
     }
     for (int t = 0; t < network->n_throat; t++) {
         snapshot->parent[t] = t;
-        snapshot->size[t] = 1;
+        snapshot->size[t] = snapshot->saturation[t] > 0;
         for (int end = 0; end < 2; end++)
             snapshot->gas[network->throat_nodes[t][end]] |=
                 snapshot->slice[t] >= 0 && snapshot->saturation[t] == 0;
     }
     for (int t = 0; t < network->n_throat; t++)
-        for (int end = 0; end < 2 && snapshot->saturation[t] > 0; end++)
+        for (int end = 0; end < 2 && is_path(snapshot, t); end++)
             join(snapshot, t, network->throat_nodes[t][end]);
     for (int t = 0; t < network->n_throat; t++)
-        if (snapshot->saturation[t] > 0 && snapshot->parent[t] == t)
+        if (snapshot->parent[t] == t && snapshot->size[t] > 0)
             count[31 - __builtin_clz((unsigned)snapshot->size[t])]++;
 }
 
@@ -209,7 +216,7 @@ static int go_on_to(struct snapshot *snapshot, const struct drying_history *hist
 // Levels must fall, since steps are replayed once.
 struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
-                              bool gas_parts, int n_level, const double *level,
+                              enum liquid_paths paths, int n_level, const double *level,
                               bool keep_throats)
 {
     const size_t n = (size_t)n_level, n_throat = (size_t)network->n_throat;
@@ -223,7 +230,7 @@ struct profiles profiles_init(const struct network *network,
         .throat_saturation = keep_throats ? NEW_ARRAY(double, n *n_throat) : NULL};
     for (int s = 0; s < PROFILE_SLICES; s++)
         profiles.depth[s] = (s + 0.5) / PROFILE_SLICES;
-    struct snapshot snapshot = snapshot_init(network, open_walls, gas_parts);
+    struct snapshot snapshot = snapshot_init(network, open_walls, paths);
     if (history->rings) take_rings(&snapshot, history->rings);
     int step = 0;
     apply_changes(&snapshot, history, step);

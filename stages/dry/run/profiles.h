@@ -26,13 +26,20 @@ struct profiles {
     double *throat_saturation; // (n_level, n_throat); NULL unless asked for
 };
 
+// What makes one cluster of liquid, as in the history of the run.
+enum liquid_paths {
+    PATHS_PARTED_BY_GAS, // throats that share a node to which no gas has come
+    PATHS_THROATS,       // throats that share a node
+    PATHS_FILMS          // all that were one cluster in the full network
+};
+
 // Saturations of slices and of the surface count what is in rings too; those of throats
 // do not. LEVEL (N_LEVEL) falls from one to the next. A slice without throats has
 // saturation 0. Each throat counts where its middle is. The caller frees the result
 // with profiles_free. O(n_change + n_level * n_throat).
 struct profiles profiles_init(const struct network *network,
                               const struct drying_history *history, unsigned open_walls,
-                              bool gas_parts, int n_level, const double *level,
+                              enum liquid_paths paths, int n_level, const double *level,
                               bool keep_throats);
 
 void profiles_free(struct profiles *profiles);

@@ -41,8 +41,10 @@ static void check_profiles(enum liquid_limit liquid)
     const struct drying_conditions conditions = kharaghani_conditions(liquid);
     struct drying_history history = dry_and_check(&network, &conditions);
     const double level[] = {1, 0.8, 0.5, 0.2, 0};
-    struct profiles profiles = profiles_init(&network, &history, WALL_Z_UPPER,
-                                             liquid != LIQUID_IMMOBILE, 5, level, true);
+    struct profiles profiles =
+        profiles_init(&network, &history, WALL_Z_UPPER,
+                      liquid == LIQUID_IMMOBILE ? PATHS_THROATS : PATHS_PARTED_BY_GAS,
+                      5, level, true);
     assert_int_equal(profiles.step[0], 0);
     assert_int_equal(profiles.step[4], history.n_step - 1);
     for (int k = 0; k < 5; k++) {

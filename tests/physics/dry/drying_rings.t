@@ -90,6 +90,9 @@ with dry(net, "rings=joined", *WATER) as file:
        "joined by films: throats, rings and vapour add up at all steps", (total, alone, summary))
     ok((nodes[fed] == 1).all() and abs(summary["residual_saturation"] * void / summary["ring_volume"] - 1) < 1e-12,
        "films feed all rings until the last throat has emptied", summary)
+    then = np.searchsorted(-file["history/saturation"][:], -file["profiles/saturation"][:])
+    there = file["history/clusters"][:][then], file["profiles/clusters"][:].sum(axis=1)
+    ok(np.array_equal(*there), "profiles count what films join as one cluster, as the history does", there)
     order = file["events/throat"][:]
     run("invade", "-q", *sets("trapping=false"), net, "-o", at("invasion"))
     with h5py.File(at("invasion")) as invasion:
