@@ -31,14 +31,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-// The time of the first step at or below that saturation. 0 stands for a period that
-// did not end: then only a dry network is as low, or the last step counts.
+// The end of a run within the first period.
 static double first_period_end_time(const struct drying_history *history)
 {
-    for (int k = 0; k < history->n_step; k++)
-        if (history->saturation[k] <= history->first_period_end_saturation)
-            return history->time[k];
-    return history->time[history->n_step - 1];
+    const double time = history->first_period_end_time;
+    return time > 0 ? time : history->time[history->n_step - 1];
 }
 
 // Over the first, so that runs of different sizes can be compared.

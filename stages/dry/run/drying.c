@@ -22,14 +22,17 @@
 #include <math.h>
 #include <stdlib.h>
 
-// The first step at which the rate is below this share of the first one; written once.
+// The first moment at which the rate is below this share of the first one; written
+// once.
 static void note_first_period(struct run *run)
 {
     struct drying_history *history = run->recorder.history;
     const double fraction = run->conditions->first_period_rate_fraction;
-    if (history->first_period_end_saturation == 0 &&
-        rate_now(run) < fraction * run->first_rate)
-        history->first_period_end_saturation = network_saturation(run);
+    if (history->first_period_end_time > 0 ||
+        !(rate_now(run) < fraction * run->first_rate))
+        return;
+    history->first_period_end_saturation = network_saturation(run);
+    history->first_period_end_time = compensated_value(run->time) * run->scale.time;
 }
 
 static void begin(struct run *run)

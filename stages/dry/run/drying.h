@@ -68,8 +68,8 @@ struct drying_history {
     // an open one; 0 if it never does (or only as the last throat empties).
     double breakthrough_saturation;
     // Saturation at which the rate first is below first_period_rate_fraction times the
-    // first rate.
-    double first_period_end_saturation;
+    // first rate, and when (s), also where no step is recorded then; 0 if it never is.
+    double first_period_end_saturation, first_period_end_time;
 
     struct ring_history *rings; // what became of rings (ring_history.h); NULL: none
     struct film_history *films; // with rings=films (film_history.h); NULL: none

@@ -147,6 +147,7 @@ void recorder_state(struct recorder *recorder, int n_throat, int n_place,
     steps_state(recorder, n_throat, stream);
     stream_numbers(stream, &recorder->history->breakthrough_saturation, 1);
     stream_numbers(stream, &recorder->history->first_period_end_saturation, 1);
+    stream_numbers(stream, &recorder->history->first_period_end_time, 1);
 }
 
 // -----------------------------------------------------------------------------------

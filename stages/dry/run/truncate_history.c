@@ -54,5 +54,5 @@ void truncate_history(struct drying_history *history, const struct network *netw
     if (history->breakthrough_saturation < saturation)
         history->breakthrough_saturation = 0;
     if (history->first_period_end_saturation < saturation)
-        history->first_period_end_saturation = 0;
+        history->first_period_end_saturation = history->first_period_end_time = 0;
 }

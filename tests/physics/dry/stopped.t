@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A drying that stops and records few steps: it ends in the same state, at the same time, as one that records
-# each event.
+# A drying that records few steps: if it stops it ends in the same state, at the same time, as one that records
+# each event, and its first period ends as soon.
 import sys
 
 import h5py
@@ -37,4 +37,10 @@ with scratch_paths() as at:
         off = abs(few["left"] - all_steps["left"]).max()
         ok(off < 1e-12 and few["clusters"] == all_steps["clusters"] and abs(few["time"] / all_steps["time"] - 1) < 1e-12,
            f"{name}: the same state at the same time", (off, few["time"] / all_steps["time"] - 1))
+        first = []
+        for step_interval in 0.3, 0:
+            run("dry", *scene, *sets(*settings, f"step_interval={step_interval}"), at("network"), "-o", at("drying"))
+            with h5py.File(at("drying")) as file:
+                first.append(file["summary"].attrs["first_period_end_time"] / file["history/time"][-1])
+        ok(0 < first[1] < 1 and abs(first[0] - first[1]) < 1e-12, f"{name}: the first period ends at the same time", first)
 done()
