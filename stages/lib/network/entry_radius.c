@@ -26,7 +26,11 @@
 #include <stdbool.h>
 
 enum { MOST_ROUNDS = 100 };
-static const double TOLERANCE = 1e-11;
+
+// A step of CONVERGED leaves an error of its square. Halving ends near rounding:
+// throats on both sides of one gap are equally easy to enter where it loses its liquid,
+// and entry_order.h tells others from such by 1e-12.
+static const double CONVERGED = 1e-9, HALVED = 1e-15;
 
 // What liquid in one gap takes: area, length of the meniscus, angles of both discs.
 struct liquid_gap {
@@ -107,8 +111,8 @@ double entry_radius(const struct open_section *section, double contact_angle)
     double R = open_area(section, z) / (cosine * rim); // all gaps dry
     for (int round = 0; round < MOST_ROUNDS && R > 0 && isfinite(R); round++) {
         const double next = next_radius(section, z, R, cosine, sine);
-        if (fabs(next - R) <= TOLERANCE * R || high - low <= TOLERANCE * R)
-            return 2 * cosine * R;
+        if (fabs(next - R) <= CONVERGED * R) return 2 * cosine * next;
+        if (high - low <= HALVED * R) return 2 * cosine * R;
         *(next > R ? &low : &high) = R;
         R = next > low && next < high ? next : low + (fmin(high, 4 * R) - low) / 2;
     }
