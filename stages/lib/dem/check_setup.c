@@ -216,8 +216,6 @@ struct wall_label wall_label(const struct dem_wall *wall, int w)
     return label;
 }
 
-// Sizes by shape: a plane has none, a block has edges, all others a radius. A servo
-// moves along the normal, so only a plane can have one.
 // A grain meets a wall in the nearest image. Across an axis that repeats this is a
 // saw of a plane, and of a cylinder aslant to it.
 static enum status check_images(const struct dem_setup *setup, int w,
@@ -244,6 +242,8 @@ static enum status check_images(const struct dem_setup *setup, int w,
     return STATUS_OK;
 }
 
+// Sizes by shape: a plane has none, a block has edges, all others a radius. A servo
+// moves along the normal, so only a plane can have one.
 static enum status check_wall(const struct dem_setup *setup, int w,
                               struct reason *reason)
 {
