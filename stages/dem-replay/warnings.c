@@ -135,18 +135,21 @@ static void warn_if_sudden(const struct packing *packing,
 }
 
 // Where the largest suction was too small for gas to enter anything, or for the share
-// that is to evaporate. A round takes its portion to half of it.
+// that is to evaporate. A round takes its portion to half of it. Pores that narrow
+// press liquid out, which nothing needs to take.
 static void warn_if_wet(const struct load *load, const struct replay_settings *settings,
                         const struct response *response)
 {
     const struct capillarity *how = &settings->capillarity;
     if (!load->drains || load->n_time == 0) return;
-    const double gone =
-        response->drainage.drained[load->n_time - 1] / response->drainage.first_liquid;
+    const struct drainage_history *drainage = &response->drainage;
+    const int last = load->n_time - 1;
+    const double gone = drainage->drained[last] / drainage->first_liquid;
+    const double left = drainage->liquid[last] / drainage->first_liquid;
     const bool dries = how->control == CONTROL_EVAPORATION;
     const double wanted =
         dries ? how->last_drained * (1 - 1.0 / (double)(how->steps * how->rounds)) : 0;
-    if (gone > wanted || (dries && gone == wanted)) return;
+    if (gone > wanted || (dries && fmin(left, 1 - gone) <= 1 - wanted)) return;
     report(
         "gas has taken %.3g of the liquid%s: capillary.suction=%g Pa is too small for "
         "the throats, which need 2 gamma cos(theta)/r",

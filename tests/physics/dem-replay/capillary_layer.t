@@ -172,6 +172,9 @@ with scratch_paths() as at:
        "also where it is too small for what is to evaporate")
     ok("is too small" not in said(*dries, f"capillary.suction={2 * ENTRY}")[1] +
        said(f"capillary.suction={2.04 * ENTRY}")[1], "but not where it is enough")
+    soft = ["normal_stiffness=20", "shear_stiffness=20", "bond.normal_stiffness=1e13", "bond.shear_stiffness=4e12"]
+    whole = ["capillary.evaporated=1", "capillary.steps=8", f"capillary.suction={4 * ENTRY}", "tolerance=1e-4"]
+    ok("is too small" not in said(*dries, *whole, *soft)[1], "nor where a soft layer has pressed the rest out")
     hasty = ["tolerance=1e-15", "cycles=16", "most_cycles=16"]
     ok("did not come to rest" in said(*hasty)[1] and "quasi-static" not in said(*hasty)[1],
        "steps that do not rest: no advice to use equilibria, which do not drain")
