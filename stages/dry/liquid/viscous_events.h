@@ -18,7 +18,7 @@
 //     duration = span PACE / vapour_pace.
 #pragma once
 
-#include "basics/indexed_heap.h"
+#include "indexed_heap.h"
 #include "losses.h"
 #include "viscous.h"
 

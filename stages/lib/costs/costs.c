@@ -145,7 +145,7 @@ struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact
 struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
                               bool kept)
 {
-    const double flow = kept ? 3.8e-8 * body->throats * body->throats
+    const double flow = kept ? 2.5e-8 * body->throats * body->throats
                              : 1.4e-9 * pow(body->throats, 2.4);
     drying.seconds += flow;
     drying.least += flow / 3;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The first item of a heap beside a search of all, while keys change, items come and
 // go, and keys tie.
-#include "basics/indexed_heap.h"
-#include "../random.h"
-#include "../test.h"
+#include "dry/liquid/indexed_heap.h"
+#include "../../random.h"
+#include "../../test.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 // that the first one does not depend on what was put and taken before.
 #include "indexed_heap.h"
 
-#include "memory.h"
+#include "basics/memory.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
