@@ -7,10 +7,10 @@
 //     loss = scale (evaporation - inflow),
 // so that the losses add up to what the cluster evaporates (viscous_events.h). The flow
 // is found again when throats with flow->step of the cluster's liquid have emptied or
-// refilled, when what is left of it evaporates so much more or less, or when the scale
-// is far from 1: then the throat that emptied was one that fed the others. To let all
-// potentials fall alike until others feed them, as without viscosity, would save three
-// of four solutions at 1e-6 m2/s, but errs up to four times as much.
+// refilled, when it evaporates so much more or less (also as parts leave it), or when
+// the scale is far from 1: then the throat that emptied was one that fed the others. To
+// let all potentials fall alike until others feed them, as without viscosity, would
+// save three of four solutions at 1e-6 m2/s, but errs up to four times as much.
 #include "kept_flow.h"
 
 #include <math.h>
@@ -65,9 +65,4 @@ void kept_flow_stop(struct liquid_flow *flow, int cluster, int throat)
 {
     flow->moving[throat] = false;
     memory_of(flow, cluster)->changed += flow->solver->occupancy->volume[throat];
-}
-
-void kept_flow_take(struct liquid_flow *flow, int cluster, double evaporation)
-{
-    memory_of(flow, cluster)->evaporation -= evaporation;
 }

@@ -24,6 +24,3 @@ double kept_flow_inflow(const struct liquid_flow *flow, int cluster, int throat)
 
 // THROAT is full again: its meniscus stops.
 void kept_flow_stop(struct liquid_flow *flow, int cluster, int throat);
-
-// Throats that evaporated EVAPORATION have left CLUSTER.
-void kept_flow_take(struct liquid_flow *flow, int cluster, double evaporation);

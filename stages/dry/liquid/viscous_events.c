@@ -436,7 +436,6 @@ static void take_evaporation(struct viscous_events *events, int cluster, int thr
 {
     compensated_add(&events->cluster[cluster].evaporation,
                     -events->evaporation[throat]);
-    kept_flow_take(events->flow, cluster, events->evaporation[throat]);
 }
 
 // THROAT, which has moved from CLUSTER to another, takes what it has with it.
