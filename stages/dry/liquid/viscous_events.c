@@ -310,6 +310,12 @@ static enum status settle_touched(struct viscous_events *events, struct reason *
 
 // --- from event to event -------------------------------------------------------------
 
+// Nodes that begin dry count as wet until the vapour has followed them.
+static void follow_start(struct kept_vapour *kept)
+{
+    if (kept) kept_vapour_follow(kept);
+}
+
 struct viscous_events *viscous_events_create(struct occupancy *occupancy,
                                              struct liquid_flow *flow)
 {
@@ -328,6 +334,7 @@ struct viscous_events *viscous_events_create(struct occupancy *occupancy,
     for (int t = 0; t < n; t++)
         events->place[t] = -1;
     viscous_events_forget(events);
+    follow_start(occupancy->vapour.kept);
     return events;
 }
 

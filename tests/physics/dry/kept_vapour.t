@@ -68,6 +68,9 @@ with scratch_paths() as at:
         ok(max(off) < 0.02 and min(off) < 0.005, f"viscous liquid, {viscosity} m2/s: alike in time", off)
         ok(all(set(drying["throats"]) == set(exact["throats"]) and drying["books"] < 1e-11 for drying in kept),
            "the same throats empty, and nothing is lost", [drying["books"] for drying in kept])
+    late = [dried(*liquid, "start_saturation=0.5", f"vapour_step={step}") for step in (0, 0.2)]
+    ok(set(late[0]["throats"]) == set(late[1]["throats"]) and late[1]["books"] < 1e-11,
+       "nor where nodes are dry at the start", late[1]["books"])
     for other in "kelvin=true", "liquid=viscous":
         refused(f"vapour_step with {other}", "vapour_step: must be 0", "dry", "-q",
                 *sets("vapour_step=0.1", other), at("network"))
