@@ -7,7 +7,9 @@
 //     in a full throat to which more flows stops (kept_flow.h);
 //     each cluster touched gets a new scale, or its flow is found again.
 // A change of the scale moves no end: they are readings of the cluster's clock,
-//     reading = clock + scale (now - time).
+//     reading = clock + scale (now - time),
+// both since its flow was found, as flows between menisci may be 1e9 times what
+// evaporates, and end in so small a part of the time before.
 // Sums are changed by differences of compensated numbers, and added up whenever a flow
 // is found.
 #include "viscous_events.h"
@@ -25,16 +27,23 @@ static int cluster_of(const struct viscous_events *events, int throat)
 
 // --- clocks and ends -----------------------------------------------------------------
 
+// Since the flow of CLUSTER was last found.
+static double time_of(const struct viscous_events *events, int cluster)
+{
+    return compensated_difference(events->now, events->cluster[cluster].found);
+}
+
 static double reading(const struct viscous_events *events, int cluster)
 {
     const struct cluster_events *its = &events->cluster[cluster];
-    return its->clock + its->scale * (events->now - its->time);
+    return its->clock + its->scale * (time_of(events, cluster) - its->time);
 }
 
 // By the clock that counts for THROAT of CLUSTER.
 static double moment(const struct viscous_events *events, int cluster, int throat)
 {
-    return events->rate[throat] > 0 ? reading(events, cluster) : events->now;
+    return events->rate[throat] > 0 ? reading(events, cluster)
+                                    : time_of(events, cluster);
 }
 
 static void bring_up(struct viscous_events *events, int cluster, int throat)
@@ -79,16 +88,30 @@ static double first_end(const struct viscous_events *events, int cluster,
     return heap->n > 0 ? events->end[heap->item[0]] : INFINITY;
 }
 
+// The next event of CLUSTER, by its own time.
+static struct viscous_event next_in(const struct viscous_events *events, int cluster)
+{
+    const struct cluster_events *its = &events->cluster[cluster];
+    const double empties =
+        fmax(0, first_end(events, cluster, QUEUE_LOSING) - reading(events, cluster)) /
+        its->scale;
+    const double refills =
+        fmax(0, first_end(events, cluster, QUEUE_REFILLING) - time_of(events, cluster));
+    const bool is_refill = refills <= empties;
+    const struct indexed_heap *queue =
+        &its->queue[is_refill ? QUEUE_REFILLING : QUEUE_LOSING];
+    return (struct viscous_event){queue->n > 0 ? queue->item[0] : -1, is_refill,
+                                  fmin(empties, refills)};
+}
+
 // When CLUSTER has its next event, its clock running at SCALE from now on.
 static void set_scale(struct viscous_events *events, int cluster, double scale)
 {
     struct cluster_events *its = &events->cluster[cluster];
     its->clock = reading(events, cluster);
-    its->time = events->now;
+    its->time = time_of(events, cluster);
     its->scale = scale;
-    const double empties = first_end(events, cluster, QUEUE_LOSING);
-    const double next = fmin(events->now + fmax(0, empties - its->clock) / scale,
-                             first_end(events, cluster, QUEUE_REFILLING));
+    const double next = compensated_value(events->now) + next_in(events, cluster).span;
     events->next[cluster] = next;
     if (next < INFINITY)
         indexed_heap_put(&events->queue, events->next, events->next_place, cluster);
@@ -227,7 +250,8 @@ static void stop_all(struct viscous_events *events, int cluster)
     }
     its->losing = its->refilling = (struct compensated){0};
     its->scale = 1;
-    its->clock = its->time = events->now;
+    its->clock = its->time = 0;
+    its->found = events->now;
 }
 
 // With the LOSSES of one cluster, or of all, which have been stopped.
@@ -364,9 +388,9 @@ void viscous_events_forget(struct viscous_events *events)
     for (int c = 0; c < events->capacity; c++)
         stop_all(events, c);
     for (int c = 0; c < events->capacity; c++)
-        events->cluster[c].clock = events->cluster[c].time = 0;
+        events->cluster[c].found = (struct compensated){0};
     indexed_heap_clear(&events->queue, events->next_place);
-    events->now = 0;
+    events->now = (struct compensated){0};
     events->must_find = true;
 }
 
@@ -392,14 +416,7 @@ enum status viscous_events_find(struct viscous_events *events, struct reason *re
 struct viscous_event viscous_events_next(const struct viscous_events *events)
 {
     if (events->queue.n == 0) return (struct viscous_event){.throat = -1};
-    const int cluster = events->queue.item[0];
-    const struct cluster_events *its = &events->cluster[cluster];
-    const double refills = first_end(events, cluster, QUEUE_REFILLING);
-    const double next = events->next[cluster];
-    const bool is_refill = refills <= next;
-    const enum meniscus_queue queue = is_refill ? QUEUE_REFILLING : QUEUE_LOSING;
-    return (struct viscous_event){its->queue[queue].item[0], is_refill,
-                                  fmax(0, next - events->now)};
+    return next_in(events, events->queue.item[0]);
 }
 
 double viscous_events_rate(const struct viscous_events *events)
@@ -412,7 +429,7 @@ double viscous_events_advance(struct viscous_events *events, double span)
     struct occupancy *occupancy = events->occupancy;
     const double duration = span * events->pace / vapour_pace(&occupancy->vapour);
     compensated_add(&occupancy->total_liquid, -span * viscous_events_rate(events));
-    events->now += span;
+    compensated_add(&events->now, span);
     events->span += span;
     events->duration += duration;
     return duration;

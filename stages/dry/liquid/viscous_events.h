@@ -28,7 +28,8 @@ enum meniscus_queue { QUEUE_LOSING, QUEUE_REFILLING, QUEUES };
 struct cluster_events {
     struct compensated evaporation, losing, refilling;
     double scale;
-    double clock, time; // the reading of its clock at TIME
+    struct compensated found; // when its flow was last found
+    double clock, time;       // the reading of its clock at TIME since then
     struct indexed_heap queue[QUEUES];
     bool is_touched;
 };
@@ -36,17 +37,17 @@ struct cluster_events {
 struct viscous_events {
     struct occupancy *occupancy;
     struct liquid_flow *flow;
-    double now;            // since all losses were last found
-    double pace;           // as above
-    double duration, span; // since the vapour was last found: of the mean
-    bool must_find;        // all losses are to be found
-    bool found_vapour;     // in all of the gas, at the last event
-    double *share;         // (2 n_throat) what a throat evaporates at each of its ends
-    double *evaporation;   // (n_throat) at both
-    double *rate;          // (n_throat) as above; 0: its meniscus stays
+    struct compensated now; // since all losses were last found
+    double pace;            // as above
+    double duration, span;  // since the vapour was last found: of the mean
+    bool must_find;         // all losses are to be found
+    bool found_vapour;      // in all of the gas, at the last event
+    double *share;          // (2 n_throat) what a throat evaporates at each of its ends
+    double *evaporation;    // (n_throat) at both
+    double *rate;           // (n_throat) as above; 0: its meniscus stays
     double *since; // (n_throat) when its liquid was last brought up to date, and
     double *end;   // (n_throat) when it will have emptied: by its cluster's clock;
-                   //     or have refilled: by time
+                   //     or have refilled: by time since its flow was found
     int *place;    // (n_throat) in a queue of its cluster
     int capacity;
     struct cluster_events *cluster; // (capacity) by identity

@@ -58,6 +58,8 @@ with scratch_paths() as at:
         ends = [dried("small", f"viscosity={viscosity}", f"flow_step={step}") for step in (0, 0.05)]
         ok(farthest(*ends) < 1e-3, f"next to a limit, a viscosity of {viscosity}, flows hardly change",
            farthest(*ends))
+        ok(ends[1]["books"] < 1e-12, "and nothing is lost, though more flows between menisci than evaporates",
+           ends[1]["books"])
     for other in "kelvin=true", "saturation_step=0.5":
         refused(f"flow_step with {other}", "flow_step: must be 0", "dry", "-q",
                 *sets("liquid=viscous", "flow_step=0.01", other), at("small"))
