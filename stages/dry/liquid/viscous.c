@@ -354,6 +354,7 @@ static enum status find_losses(struct liquid_flow *flow,
                                int *n_loss, struct reason *reason)
 {
     if (flow->response) return find_given(flow, problem, loss, n_loss, reason);
+    flow->solver->cluster[problem->cluster].liquid = 0; // of a flow that was kept
     count_menisci(flow, problem);
     if (!(problem->turnover > 0) && !others_are_partial(flow, problem)) {
         if (flow->wants_pressures) write_pressures(flow, problem, true);
@@ -362,7 +363,6 @@ static enum status find_losses(struct liquid_flow *flow,
     const bool decided = only_one_moves(flow, problem);
     if (decided && (problem->n_throat == 1 || !flow->wants_pressures)) {
         move_reference(flow, problem);
-        flow->solver->cluster[problem->cluster].liquid = 0; // no flow to keep
         add_loss(loss, n_loss, problem->reference, problem->evaporation);
         return STATUS_OK;
     }
