@@ -42,13 +42,17 @@ struct check_parameters {
 
 static const struct parameter table[] = {
     {"touching_gap", PARAMETER_NUMBER, "1", "1e-6", AT(touching_gap), BETWEEN(0, 1),
-     .text = "largest gap between touching surfaces, over the sum of the two radii"},
+     .text = "largest gap between touching surfaces, over the sum of the two radii; "
+             "this and the following three also as section pack of the scene says",
+     .section = "pack"},
     {"frame", PARAMETER_INTEGER, "1", "-1", AT(frame), BETWEEN(-1, 1e12),
-     .text = "of a LAMMPS dump, from 0; -1: the last"},
+     .text = "of a LAMMPS dump, from 0; -1: the last", .section = "pack"},
     {"import.scale", PARAMETER_NUMBER, "m", "1", AT(import_scale), ABOVE(0),
-     .text = "metres per unit of length of INPUT, as pack.import.scale"},
+     .text = "metres per unit of length of INPUT (that of pack: of text or a dump)",
+     .section = "pack"},
     {"import.diameters", PARAMETER_BOOLEAN, "1", "false", AT(import_diameters),
-     .text = "INPUT has diameters in place of radii"},
+     .text = "INPUT has diameters in place of radii (that of pack: text or a dump)",
+     .section = "pack"},
     {"density", PARAMETER_NUMBER, "kg m-3", "2500", AT(material.density), ABOVE(0),
      .text =
          "of the grains; this and the following parameters are for the suggestions"},
@@ -157,20 +161,35 @@ static struct findings judge(const struct packing *packing,
     return findings;
 }
 
-// Text has no bonds: those that pack would make. A dump is "text", too (read_grains.c);
-// artifacts without bonds are left as they are.
-static void bond_text(struct packing *packing, const struct contacts *contacts,
-                      const json_t *inputs)
+// A dump is "text", too (read_grains.c).
+static bool is_text(const json_t *inputs)
 {
     const json_t *schema = json_object_get(json_array_get(inputs, 0), "schema");
-    if (strcmp(json_string_value(schema), "text")) return;
-    bond_contacts(packing, contacts);
+    return !strcmp(json_string_value(schema), "text");
+}
+
+// What pack did to its input, an artifact has behind it: of these only what section
+// check or --set says counts.
+static void leave_to_pack(const struct invocation *invocation,
+                          struct check_parameters *parameters)
+{
+    json_t *import = json_object_get(invocation->parameters, "import");
+    if (json_object_get(invocation->borrowed, "import.scale")) {
+        parameters->import_scale = 1;
+        json_object_set_new(import, "scale", json_real(1));
+    }
+    if (json_object_get(invocation->borrowed, "import.diameters")) {
+        parameters->import_diameters = false;
+        json_object_set_new(import, "diameters", json_false());
+    }
 }
 
 // Lengths in metres, the liquid's surface tension. UNIT: as facts have it.
-static struct packing read_input(const char *path, struct check_parameters *parameters,
-                                 double *unit, json_t *inputs)
+static struct packing read_input(const struct invocation *invocation,
+                                 struct check_parameters *parameters, double *unit,
+                                 json_t *inputs)
 {
+    const char *path = invocation->inputs[0];
     conditions_require(&parameters->conditions, 1u << FLUID_SURFACE_TENSION, "check");
     parameters->material.surface_tension =
         parameters->conditions.property[FLUID_SURFACE_TENSION];
@@ -178,6 +197,7 @@ static struct packing read_input(const char *path, struct check_parameters *para
     bool has_box;
     struct packing packing =
         read_grains(path, NULL, parameters->frame, &has_box, unit, inputs);
+    if (!is_text(inputs)) leave_to_pack(invocation, parameters);
     if (parameters->import_scale != 1) *unit = 0;
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
                    has_box);
@@ -191,11 +211,12 @@ int main(int argc, char **argv)
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
     json_t *inputs = json_array();
     double unit;
-    struct packing packing =
-        read_input(invocation.inputs[0], &parameters, &unit, inputs);
+    struct packing packing = read_input(&invocation, &parameters, &unit, inputs);
     const double gap = parameters.touching_gap;
     struct contacts contacts = find_contacts(&packing, gap);
-    bond_text(&packing, &contacts, inputs);
+    // Text has no bonds: those that pack would make. Artifacts without bonds are left
+    // as they are.
+    if (is_text(inputs)) bond_contacts(&packing, &contacts);
 
     struct packing_facts facts = packing_facts(&packing, &contacts, gap);
     facts.unit = unit;

@@ -363,6 +363,23 @@ ok(2 < ethanol["weight"]["grain"] / report["weight"]["grain"] < 4,
    "ethanol pulls a third as hard as water", (ethanol["weight"], report["weight"]))
 status, _, said = call("check", "--set", "fluid=other", beads_mm)
 ok(status == 65 and "check.surface_tension" in said, "another liquid has to say how it pulls", said)
+# A scene says to pack what its grains are in: check takes it from there, for what pack reads, not for what it wrote.
+with open(at("beads.json"), "w") as file:
+    json.dump({"pack": {"method": "import", "import": {"scale": 1e-3, "diameters": True}, "touching_gap": 0.05}}, file)
+by_hand = check(beads_mm, *sets("import.scale=1e-3", "import.diameters=true", "touching_gap=0.05"))[1]
+by_scene = check(beads_mm, "-p", at("beads.json"))[1]
+ok(by_scene == by_hand and by_hand["radius"]["median"] < 1e-3, "a scene says units, diameters and gap to pack and check",
+   (by_scene["radius"], by_hand["radius"]))
+own = check(beads_mm, "-p", at("beads.json"), *sets("import.diameters=false", "touching_gap=1e-6"))[1]
+ok({**own, "parameters": 0} == {**report, "parameters": 0}, "--set is stronger", own["contacts"])
+run("pack", "-q", "-p", at("beads.json"), beads_mm, "-o", at("beads-packed"))
+packed = check(at("beads-packed"), "-p", at("beads.json"))[1]
+ok(packed["radius"] == by_hand["radius"] and packed["contacts"] == by_hand["contacts"] and packed == check(
+    at("beads-packed"), *sets("touching_gap=0.05"))[1], "what pack wrote is in metres already", packed["radius"])
+with open(at("beads.json"), "w") as file:
+    json.dump({"pack": {"import": {"scale": -1}}}, file)
+status, _, said = call("check", "-p", at("beads.json"), beads_mm)
+ok(status == 65 and said == f"check: {at('beads.json')}: pack.import.scale: must be > 0 m, got -1\n", "in the words of pack", said)
 ok(call("check", "--set", "pack.import.scale=1e-3", beads_mm) == (64, "", "check: --set pack.import.scale=1e-3: must go "
    "without the section, import.scale=1e-3\n"), "keys of pack that check has, too, go without the section")
 
@@ -411,5 +428,13 @@ with open(at("dump"), "w", encoding="utf-8") as file:
     file.write("ITEM: UNITS\ncgs\n" + frame)
 status, report, agree = check(at("dump"), *near, "-s", "import.scale=0.01")
 ok(agree and "units" not in names(report) and np.isclose(report["radius"]["median"], np.sort(r)[n // 2]), "and are right with their scale", report)
+with open(at("dump"), "w", encoding="utf-8") as file:
+    file.write(frame + frame.replace(f"ATOMS\n{n}\n", "ATOMS\n1\n").replace(rows, rows[:rows.index("\n") + 1]))
+counts = []
+for first in 0, 1, -1:
+    with open(at("frames.json"), "w", encoding="utf-8") as file:
+        json.dump({"pack": {"frame": first, "import": {"scale": 0.01}}}, file)
+    counts.append(check(at("dump"), "-p", at("frames.json"))[1]["grains"])
+ok(counts == [n, 1, 1], "the frame that a scene says", counts)
 
 done()

@@ -281,16 +281,37 @@ static void put(json_t *section, const char *key, json_t *value)
     json_object_set(section, key, value);
 }
 
+// Whether KEY can be put into SECTION: false where it is there, or its group is no
+// object, of which parameters_fill complains.
+static bool lacks(const json_t *section, const char *key)
+{
+    const char *last = strrchr(key, '.');
+    char group[128];
+    snprintf(group, sizeof group, "%.*s", last ? (int)(last - key) : 0, key);
+    const json_t *inner = last ? find(section, group) : NULL;
+    return !(inner && !json_is_object(inner)) && !find(section, key);
+}
+
 void parameters_give(json_t *section, const char *key, const json_t *other)
 {
     const char *last = strrchr(key, '.');
     json_t *value = json_object_get(other, last ? last + 1 : key);
-    char group[128];
-    snprintf(group, sizeof group, "%.*s", last ? (int)(last - key) : 0, key);
-    const json_t *inner = last ? find(section, group) : NULL;
-    if (inner && !json_is_object(inner)) return; // parameters_fill complains of it
-    if (!value || json_is_null(value) || find(section, key)) return;
+    if (!value || json_is_null(value) || !lacks(section, key)) return;
     put(section, key, value);
+}
+
+bool parameters_borrow(json_t *section, const struct parameter *row,
+                       const json_t *other, const char *where, void *parameters)
+{
+    json_t *value = find(other, row->key);
+    if (!value || !lacks(section, row->key)) return false;
+    const struct parameter alone[] = {*row, {0}};
+    json_t *checked = json_object();
+    put(checked, row->key, value);
+    json_decref(parameters_fill(alone, checked, where, parameters));
+    json_decref(checked);
+    put(section, row->key, value);
+    return true;
 }
 
 // Whether PATH is a group of keys.

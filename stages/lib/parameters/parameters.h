@@ -83,6 +83,7 @@ struct parameter {
     size_t row_size;            // bytes of its struct
     bool shared; // the scene's section "conditions" may say it for all stages, under
                  // the last part of KEY
+    const char *section; // of another stage, which may say KEY for both
 };
 
 // A row: what each parameter has, by place; then by name what it needs of the rest.
@@ -116,6 +117,12 @@ void parameters_set(json_t *section, const char *assignment);
 // Gives SECTION what it lacks at KEY from OTHER, where that is under the last part of
 // KEY; null there says nothing.
 void parameters_give(json_t *section, const char *key, const json_t *other);
+
+// Gives SECTION what it lacks at the key of ROW from OTHER, which is the section of
+// another stage; false where there is nothing to give. Exits 65 as parameters_fill,
+// with WHERE, which names that section, in its messages. May write to PARAMETERS.
+bool parameters_borrow(json_t *section, const struct parameter *row,
+                       const json_t *other, const char *where, void *parameters);
 
 // Keys that nothing uses: KEYS is "radius|servo", where "servo" stands for all of
 // "servo.force", "servo.area", ...; WHY follows on "must be left out".

@@ -9,6 +9,7 @@
 //     --set KEY=VALUE                 on the command line
 //     "STAGE": {"KEY": ...}           the section of the file of -p, or the file itself
 //     "conditions": {"KEY": ...}      of the scene, for keys that are shared
+//     "OTHER": {"KEY": ...}           of the scene, for keys whose rows name OTHER
 //     the default of the table
 //
 // Errors of the command line exit 64, of the file or a value 65, a missing file 66. A
@@ -334,15 +335,16 @@ static json_t *section_of_scene(const json_t *scene, const char *path,
     return section;
 }
 
-// Without -p all defaults; --set may follow.
-static json_t *load_section(const struct command_line *line)
+// Without -p all defaults; --set may follow. SCENE, which the caller owns: NULL where
+// the file is none.
+static json_t *load_section(const struct command_line *line, json_t **scene)
 {
+    *scene = NULL;
     if (!line->params) return json_object();
     json_t *json = load_json(line->params);
     if (!is_scene(json, line->stage->parameters)) return json;
-    json_t *section = section_of_scene(json, line->params, line->stage);
-    json_decref(json);
-    return section;
+    *scene = json;
+    return section_of_scene(json, line->params, line->stage);
 }
 
 // Whether TABLE has the key of ASSIGNMENT.
@@ -369,15 +371,33 @@ static void set(json_t *section, const struct stage *stage, const char *assignme
     parameters_set(section, assignment);
 }
 
+// Gives SECTION what other sections of SCENE say for this stage, too, and notes which.
+static void borrow(const struct command_line *line, const json_t *scene,
+                   json_t *section, void *parameters)
+{
+    char where[300];
+    for (const struct parameter *p = line->stage->parameters; p->key; p++) {
+        if (!p->section) continue;
+        const json_t *other = object_of_scene(scene, line->params, p->section);
+        snprintf(where, sizeof where, "%s: %s", line->params, p->section);
+        if (parameters_borrow(section, p, other, where, parameters))
+            json_object_set_new(line->invocation->borrowed, p->key, json_true());
+    }
+}
+
 // WHERE begins each message: the file, the section, and whether --set took part. --set
 // comes after the file and before the check, so that what it repairs is not reported.
 // Effective parameters go to the invocation, which the artifact's provenance is made
 // from.
 static void fill(const struct command_line *line, void *parameters)
 {
-    json_t *section = load_section(line);
+    json_t *scene;
+    json_t *section = load_section(line, &scene);
     for (int k = 0; k < line->n_set; k++)
         set(section, line->stage, line->set[k]);
+    line->invocation->borrowed = json_object();
+    if (scene) borrow(line, scene, section, parameters);
+    json_decref(scene);
     char where[300];
     snprintf(where, sizeof where, "%s%s%s%s", line->params ? line->params : "",
              line->params && line->n_set ? " with --set" : "", line->params ? ": " : "",
@@ -534,5 +554,6 @@ void invocation_free(struct invocation *invocation)
 {
     free(invocation->inputs);
     json_decref(invocation->parameters);
+    json_decref(invocation->borrowed);
     *invocation = (struct invocation){0};
 }

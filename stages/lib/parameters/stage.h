@@ -19,7 +19,8 @@
 //         return STATUS_OK;
 //     }
 // Who says a parameter, the strongest first: --set, the stage's section in the file of
-// -p, "conditions" of that scene for shared keys, the default. A stage reports
+// -p, "conditions" of that scene for shared keys, the section of another stage for keys
+// whose row names one, the default. A stage reports
 // all mistakes of the user before it computes anything, and tries its outputs before it
 // works for hours.
 #pragma once
@@ -67,6 +68,7 @@ struct invocation {
     bool quiet;
     enum progress_mode progress;
     json_t *parameters; // effective, defaults filled in
+    json_t *borrowed;   // keys of those that the section of another stage said
 };
 
 // Parses the command line, reads the parameters, fills the stage's struct PARAMETERS.
