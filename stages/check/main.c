@@ -21,6 +21,7 @@
 #include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "parameters/conditions.h"
+#include "rough.h"
 #include "rounded.h"
 #include "tell.h"
 
@@ -154,6 +155,7 @@ static struct findings judge(const struct packing *packing,
     judge_packing(packing, facts, &findings);
     judge_rounding(packing, facts, gap, &findings);
     judge_bonds(packing, facts, bonds, &findings);
+    judge_ends(packing, facts, bonds, &findings);
     judge_free(facts, &findings);
     if (have_other_units(&findings)) return findings;
     judge_defaults(facts, &findings);

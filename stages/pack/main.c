@@ -29,6 +29,7 @@
 #include "parameters/estimate.h"
 #include "report.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -225,13 +226,33 @@ static void make_bonds(struct packing *packing, const struct contacts *contacts,
                parameters->touching_gap);
 }
 
-static void take_slab(const struct pack_parameters *parameters, struct domain *domain,
-                      struct packing *packing)
+// A porosity that is more than 0.01 above that of the same grains between the heights
+// of the cut is told: the rest is void between grains and a flat end.
+static void tell_ends(const struct pack_parameters *parameters,
+                      const struct packing *packing)
 {
+    const double lower = packing->lower.z, upper = packing->upper.z;
+    const double low = fmax(parameters->slab_lower, lower); // NAN: not cut there
+    const double high = fmin(parameters->slab_upper, upper);
+    const double porosity = packing_porosity(packing);
+    const double within = 1 - (1 - porosity) * (upper - lower) / (high - low);
+    if (!(high > low) || !(porosity - within > 0.01)) return;
+    report(
+        "pack.slab: the box ends on the outermost grains: its porosity is %.3g, %.3g "
+        "between the heights of the cut; more liquid will fill it than a body of such "
+        "grains holds, unless it ends there (docs/packings.md#slabs)",
+        porosity, within);
+}
+
+static void take_slab(const struct pack_parameters *parameters, struct domain *domain,
+                      struct packing *packing, bool quiet)
+{
+    const double lower = parameters->slab_lower, upper = parameters->slab_upper;
     struct reason reason;
-    const enum status status = cut_slab(parameters->slab_lower, parameters->slab_upper,
-                                        domain, packing, &reason);
+    const enum status status = cut_slab(lower, upper, domain, packing, &reason);
     if (status) die(status, "%s", reason.text);
+    if (isnan(lower) && isnan(upper)) return;
+    if (parameters->check != CHECK_NONE && !quiet) tell_ends(parameters, packing);
 }
 
 // The domain grows with the box. The layer has no bonds: it only gives the boundary
@@ -332,7 +353,7 @@ int main(int argc, char **argv)
         make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
     }
     packing.n_body = domain_bodies(&domain, packing.body);
-    take_slab(&parameters, &domain, &packing);
+    take_slab(&parameters, &domain, &packing, invocation.quiet);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);
     look_at(&packing, &contacts, &invocation, &parameters, unit);
     make_bonds(&packing, &contacts, &parameters, invocation.quiet);

@@ -383,6 +383,34 @@ ok(status == 65 and said == f"check: {at('beads.json')}: pack.import.scale: must
 ok(call("check", "--set", "pack.import.scale=1e-3", beads_mm) == (64, "", "check: --set pack.import.scale=1e-3: must go "
    "without the section, import.scale=1e-3\n"), "keys of pack that check has, too, go without the section")
 
+# ---- floors cut from a thicker packing ------------------------------------------------------
+
+# What a box that ends on the outermost surfaces gains in void is told, and what check advises takes it away.
+bed = sets("method=soft_spheres", "radius=5e-7", "sizes.distribution=uniform", "sizes.smallest=3e-7", "sizes.largest=7e-7",
+           "target=porosity", "target_value=0.4", "upper=[8e-6,8e-6,1.2e-5]")
+cut = sets("slab.lower=2e-6", "slab.upper=1e-5")
+status, _, said = call("pack", *bed, *sets("periodic=[true,true,true]"), *cut, "-o", at("cut.h5"))
+with h5py.File(at("cut.h5")) as file:
+    solid = (4 / 3 * np.pi * file["particles/radius"][:] ** 3).sum()
+    height = np.ptp([file["domain/lower"][2], file["domain/upper"][2]])
+here, between = 1 - solid / (64e-12 * height), 1 - solid / (64e-12 * 8e-6)
+ok(status == 0 and len(said.splitlines()) == 1 and f"porosity is {here:.3g}, {between:.3g} between" in said, "pack tells the void of a slab", said)
+ok(call("pack", "-q", *bed, *sets("periodic=[true,true,true]"), *cut, "-o", at("cut.h5"))[2] == "", "but not with -q")
+status, report, agree = check(at("cut.h5"))
+told = {f["name"]: f for f in report["findings"]}.get("rough", {"severity": "", "text": ""})
+stated = re.search("porosity is ([0-9.]+), ([0-9.]+) between", told["text"])
+ok(status == 0 and agree and told["severity"] == "note" and stated and stated[1] == f"{here:.3g}"
+   and abs(float(stated[2]) - between) < 0.02, "and check", told)
+call("pack", "-q", *sets(*re.findall(r"pack\.(\S+=\S+)", told["text"])), at("cut.h5"), "-o", at("even.h5"))
+status, even, _ = check(at("even.h5"))
+ok(status == 0 and abs(even["box"]["porosity"] - float((stated or [0] * 3)[2])) < 6e-4 and "rough" not in [f["name"] for f in even["findings"]],
+   "whose box has the porosity within", even["box"])
+for title, words in (("repeats", ["periodic=[true,true,true]"]), ("has flat walls", [])):
+    _, _, said = call("pack", *bed, *sets(*words), "-o", at("uncut.h5"))
+    ok(said == "" and "rough" not in [f["name"] for f in check(at("uncut.h5"))[1]["findings"]], f"nothing where the box {title}", said)
+_, _, said = call("pack", *sets("counts=[4,4,8]", "slab.lower=1e-6"), "-o", at("even.h5"))
+ok("pack.slab" not in said and "rough" not in [f["name"] for f in check(at("even.h5"))[1]["findings"]], "nor of a lattice", said)
+
 # ---- input without end --------------------------------------------------------------------
 
 for words in (["pack", "-q", "--set", "method=import", "-o", at("endless.h5")], ["check"]):
