@@ -54,14 +54,18 @@ struct bond_numbers expected_bond_numbers(const struct material *material,
 {
     const double r = facts->median;
     const double suction = expected_suction(material, r);
-    const struct vector side = subtract(facts->box.upper, facts->box.lower);
+    struct packing body = *packing;
+    if (!body.n_body) { // auxiliary grains beside it have room in its box
+        body.lower = facts->box.lower;
+        body.upper = facts->box.upper;
+    }
     double volume = 0;
     for (int i = 0; i < packing->n_particle; i++)
         volume += 4 * M_PI / 3 * pow(packing->radius[i], 3);
     const double weight = material->density * GRAVITY_OF_THE_EARTH * volume;
     const double force = FORCE_OVER_SUCTION * suction * M_PI * r * r;
     return (struct bond_numbers){.grain = weight / packing->n_particle / force,
-                                 .body = weight / (side.x * side.y * suction)};
+                                 .body = weight / (packing_base_area(&body) * suction)};
 }
 
 static double grain_stiffness(const struct material *material, double radius)

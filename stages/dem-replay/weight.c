@@ -5,7 +5,8 @@
 // what that is beside the suction p_c:
 //     Bo = mean W / largest |F|                      of a grain,
 //     Bo = sum (W + M g) / (A p_c) = rho_body g H / p_c   of the body,
-// A the horizontal area of the box and H the height of what stands in it.
+// A the horizontal area of the box, or of the cylinder or other body in it (the mean
+// over the height), and H the height of what stands in it.
 #include "weight.h"
 
 #include "basics/memory.h"
@@ -49,8 +50,7 @@ struct bond_numbers find_bond_numbers(double largest, double suction,
         grains += grain_weight(of, i);
         liquid += liquid_weight(of, i);
     }
-    const double area =
-        (packing->upper.x - packing->lower.x) * (packing->upper.y - packing->lower.y);
+    const double area = packing_base_area(packing);
     return (struct bond_numbers){
         .grain = largest > 0 ? grains / n / largest : NAN,
         .body = suction > 0 ? (grains + liquid) / (area * suction) : NAN};

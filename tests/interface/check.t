@@ -322,6 +322,15 @@ for title, seen, inside in [("a cylinder along x", "x", np.hypot(wide[:, 1], wid
             size = (file["domain/upper"][0] - file["domain/lower"][0]) / 2
         ok(abs(size / reach - 1) < 1e-5 and "round" not in names(check(at("shaped"))[1]), "what it names makes the body", size)
 
+# In a cylinder a body stands on pi/4 of the floor of its box.
+pillar = text("pillar", wide[np.hypot(wide[:, 0], wide[:, 1]) < 6.2e-4], np.full((np.hypot(wide[:, 0], wide[:, 1]) < 6.2e-4).sum(), 5e-5))
+heavy = []
+for shape in ["lower=[-7e-4,-7e-4,-7e-4]", "upper=[7e-4,7e-4,7e-4]"], ["domain.shape=cylinder", "domain.radius=7e-4", "domain.height=14e-4"]:
+    run("pack", "-q", *sets("method=import", "check=none", *shape), pillar, "-o", at("pillar.h5"))
+    heavy.append(check(at("pillar.h5"))[1]["weight"])
+ok(abs(heavy[1]["body"] / heavy[0]["body"] * np.pi / 4 - 1) < 1e-9 and heavy[0]["grain"] == heavy[1]["grain"],
+   "a cylinder weighs on its own area", heavy)
+
 # ---- weight -------------------------------------------------------------------------------
 
 # Beads of a millimetre that settled, given in millimetres: the whole chain says what they weigh.

@@ -104,6 +104,12 @@ double packing_domain_volume(const struct packing *packing)
     return room - holes;
 }
 
+double packing_base_area(const struct packing *packing)
+{
+    const struct vector edge = subtract(packing->upper, packing->lower);
+    return packing->n_body ? packing_domain_volume(packing) / edge.z : edge.x * edge.y;
+}
+
 double depth_in_bodies(const struct packing *packing, struct vector x)
 {
     double depth = HUGE_VAL;

@@ -96,6 +96,9 @@ struct vector image_apart(const struct packing *packing, struct vector from,
 // Volume of the box, or of the body within it, without what is cut out, m3.
 double packing_domain_volume(const struct packing *packing);
 
+// Its horizontal area, the mean over the height of the box, m2.
+double packing_base_area(const struct packing *packing);
+
 // The strengths of the bonds (n_bond), which the caller frees; NULL if it has none.
 double *copy_bond_strengths(const struct packing *packing);
 

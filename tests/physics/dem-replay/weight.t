@@ -4,6 +4,7 @@
 # what the support bears, that it is at rest before drying begins, what it breaks alone, and
 # the Bond numbers.
 import json
+import os
 import subprocess
 import sys
 
@@ -224,6 +225,14 @@ with scratch_paths() as at:
     response, said = replay("gravity=null", "cycles=10")
     ok("gravity" not in response["summary"].attrs and "left out: gravity" in str(response.attrs["model"]),
        "without a word there is none, if the forces have none")
+
+    # The area is that of the cylinder in which grains stand, not of the box around it.
+    run("pack", *sets("method=import", "domain.shape=cylinder", f"domain.radius={5 * R}", f"domain.height={8 * R}"),
+        at("packing"), "-o", at("column"))
+    os.replace(at("column"), at("packing"))
+    forces(force, capillary_pressure=suction)
+    body = replay(f"gravity={G}", "cycles=10")[0]["summary"].attrs["bond_number_body"]
+    ok(abs(body / (36 * MASS * G / (np.pi * (5 * R)**2 * suction)) - 1) < 1e-12, "Bond number of a body in a cylinder", body)
 
     # ---- defaults of 500 nm grains ------------------------------------------------------
     def defaults(*settings):
