@@ -20,13 +20,14 @@ set xrange [-0.6:2.6]
 set yrange [0:*]
 set xtics ("normal" 0, "shear" 1, "total" 2) scale 0
 do for [m = 1:3] { set label 10 + m p_of(m) at m - 1, graph -0.125 center font ",12" textcolor "#777777" }
+if (strlen(p) > 2) { set label 14 "p: Mann and Whitney's test" at 1, graph -0.185 center font ",12" textcolor "#777777" }
 set key left top samplen 1 textcolor "#222222"
 plot tables . "/modes-0" using ($0 - 0.19):1 with boxes linecolor rgb inviscid title "inviscid", \
     tables . "/modes-1" using ($0 + 0.19):1 with boxes linecolor rgb immobile title "immobile", \
     tables . "/modes-0" using ($0 - 0.19):($1 - $2):(0):(2 * $2) with vectors nohead linewidth 1.5 linecolor rgb "#222222" notitle, \
     tables . "/modes-1" using ($0 + 0.19):($1 - $2):(0):(2 * $2) with vectors nohead linewidth 1.5 linecolor rgb "#222222" notitle
 unset key
-do for [m = 1:3] { unset label 10 + m }
+do for [m = 1:4] { unset label 10 + m }
 
 set grid xtics
 set xrange [0:1]

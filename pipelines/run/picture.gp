@@ -23,7 +23,7 @@ set rmargin at screen 0.48
 set ylabel "drying rate / first rate" offset 1,0
 set yrange [0:1.35]
 set ytics 0, 0.2, 1
-plot table("inviscid", "rate") with steps linestyle 1 linecolor rgb inviscid title "negligible viscosity", \
+plot table("inviscid", "rate") with steps linestyle 1 linecolor rgb inviscid title "inviscid liquid", \
      table("immobile", "rate") with steps linestyle 2 linecolor rgb immobile title "immobile liquid", \
      table("inviscid", "first_period") with points linestyle 3 title "end of first period", \
      table("immobile", "first_period") with points linestyle 3 notitle
@@ -35,7 +35,7 @@ set yrange [0:top]
 set ytics autofreq
 plot keyentry with lines linestyle 1 linecolor rgb shear title "in shear", \
      keyentry with lines linestyle 1 linecolor rgb tension title "in tension", \
-     keyentry with lines linestyle 1 linecolor rgb grey title "negligible viscosity", \
+     keyentry with lines linestyle 1 linecolor rgb grey title "inviscid liquid", \
      keyentry with lines linestyle 2 linecolor rgb grey title "immobile liquid", \
      for [limit = 1:2] for [mode = 3:2:-1] table(word("inviscid immobile", limit), "count") \
          using 1:mode with steps linestyle limit linecolor rgb (mode == 3 ? shear : tension) notitle

@@ -79,6 +79,16 @@ with scratch() as folder:
     ok(re.findall(r">dry</tspan>[^\n]*\n[^>]*>([^<]*)<", drawn[0]) == counts,
        "the last panel of each limit is dry and has all cracks")
 
+    words = re.findall(r">([^<]*(?:iscosity|nviscid)[^<]*)<", drawn[0])
+    ok(words and all("nviscid liquid" in w for w in words), "the limits have the names of dry.liquid", words)
+    for limit in "inviscid", "immobile":
+        counted = json.loads(run("crackstats", at(limit, "response.h5"), at(limit, "drying.h5")))
+        counted["each"] = [{"cracks": {mode: n + k for mode, n in counted["each"][0]["cracks"].items()}} for k in range(3)]
+        with open(at(limit, "twice.json"), "w", encoding="utf-8") as file:
+            json.dump(counted, file)
+    svg = draw("figures/limits", at("inviscid", "twice.json"), at("immobile", "twice.json"), at("limits.svg"))
+    ok("p = " in svg and "Mann and Whitney" in svg, "a p names its test")
+
     # In a box that repeats no throat is drawn through the box from one side to the other.
     stage("pack", at("repeats"), sets=["periodic=[true,true,false]"])
     stage("tessellate", at("repeats"), at("unmerged"))
