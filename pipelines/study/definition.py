@@ -285,7 +285,8 @@ def read_measure(said, where):
     if kind not in stages.MADE:
         refuse(65, f"{where}: {kind}: no such artifact{nearest(kind, stages.MADE)}")
     name = said.get("name", path.strip("/").replace("/", ".").replace(" ", "."))
-    return Measure(kind, path, name, said.get("title", name), said.get("unit", ""), said.get("scale", 1))
+    words = name if "name" in said else name.removeprefix("summary.").replace("_", " ")
+    return Measure(kind, path, name, said.get("title", words), said.get("unit", ""), said.get("scale", 1))
 
 
 # ---- the whole --------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a study ends in beside its tables: programs that draw more, the page of its runs, and what is
 said on the terminal."""
+import json
 import os
 import re
 import shlex
@@ -9,7 +10,7 @@ import sys
 
 import stages
 from common import refuse
-from definition import fits
+from definition import fits, label_of
 from plan import TREE
 from results import point_title
 from rules import quoted
@@ -68,6 +69,11 @@ def link(target, path):
         os.symlink(target, path)
 
 
+def group_name(values, axes):
+    """A point with the names of its axes: "liquid inviscid, strength 30000 Pa"."""
+    return ", ".join(f"{a.title} {label_of(values.get(a.name))}" + (f" {a.unit}" if a.unit else "") for a in axes)
+
+
 def write_page(plan, rows, folder):
     """study.html, a page of all runs that are there: each with a folder `run/N` of links to its
     artifacts, which `report` takes."""
@@ -75,14 +81,16 @@ def write_page(plan, rows, folder):
     kinds = [kind for kind in PAGE_KINDS if all(kind in line["artifacts"] for line in done)]
     if not plan.study.said.get("page", True) or not 2 <= len(done) <= MOST_ON_PAGE or "response" not in kinds:
         return []
-    folders = []
+    folders, groups = [], []
     for line in done:
+        groups.append(group_name(plan.study.points[line["point"] - 1], plan.study.axes))
         mine = os.path.join(folder, "run", f"{line['run']:0{len(str(len(rows)))}}")
         os.makedirs(mine, exist_ok=True)
         for kind in kinds:
             link(f"../../{line['artifacts'][kind]}", os.path.join(mine, f"{kind}.{stages.MADE[kind][2]}"))
         folders.append(mine)
-    said = subprocess.run([os.path.join(stages.BIN, "report"), "-q", "--set", f'title="{plan.study.name}"', *folders,
+    named = ["--set", "groups=" + json.dumps("\n".join(groups))] if plan.study.axes else []
+    said = subprocess.run([os.path.join(stages.BIN, "report"), "-q", "--set", f'title="{plan.study.name}"', *named, *folders,
                            "-o", os.path.join(folder, "study.html")], capture_output=True, text=True)
     if said.returncode:
         print(f"no page: {said.stderr.strip()}", file=sys.stderr)

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 struct report_parameters {
-    const char *title, *study;
+    const char *title, *study, *groups;
     int64_t rows, moments;
 };
 
@@ -22,6 +22,9 @@ static const struct parameter table[] = {
     {"title", PARAMETER_TEXT, "1", "null", AT(title), .text = "of the page"},
     {"study", PARAMETER_TEXT, "1", "null", AT(study),
      .text = "page of all runs that this one belongs to, seen from its own; a link"},
+    {"groups", PARAMETER_TEXT, "1", "null", AT(groups),
+     .text = "of several runs: what the group of each is called, a line for each "
+             "folder; null: by what their scenes differ in"},
     {"rows", PARAMETER_INTEGER, "1", "1000", AT(rows), BETWEEN(2, 20000),
      .text = "most moments of the drying that the slider and the curves know"},
     {"moments", PARAMETER_INTEGER, "1", "16", AT(moments), BETWEEN(1, 1000),
@@ -94,8 +97,8 @@ int main(int argc, char **argv)
 {
     struct report_parameters parameters;
     struct invocation invocation = stage_begin(&stage, argc, argv, &parameters);
-    struct study *study =
-        study_of(invocation.inputs, invocation.n_input, invocation.output);
+    struct study *study = study_of(invocation.inputs, invocation.n_input,
+                                   parameters.groups, invocation.output);
     if (study)
         write_page(&(struct contents){.study = study, .title = parameters.title},
                    invocation.output);

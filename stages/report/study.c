@@ -211,12 +211,34 @@ static char *group_name(const struct study *study, const struct row *row)
     return name;
 }
 
-// Numbered as they first occur, so that their order is that of the folders.
-static void find_groups(struct study *study)
+// The line at TEXT, which moves on to the next; the caller frees it.
+static char *take_line(const char **text)
 {
+    const size_t length = strcspn(*text, "\n");
+    char *line = duplicate(*text, length + 1, 1);
+    line[length] = 0;
+    *text += length + ((*text)[length] == '\n');
+    return line;
+}
+
+static void check_lines(const char *groups, int wanted)
+{
+    int lines = groups && *groups;
+    for (const char *end = groups; end && (end = strchr(end, '\n')); end++)
+        lines++;
+    if (groups && lines != wanted)
+        die(STATUS_BAD_DATA,
+            "report.groups: must have a line for each of %d runs, has %d", wanted,
+            lines);
+}
+
+// Numbered as they first occur, so that their order is that of the folders.
+static void find_groups(struct study *study, const char *given)
+{
+    check_lines(given, study->n);
     study->group_names = json_array();
     for (int k = 0; k < study->n; k++) {
-        char *name = group_name(study, &study->row[k]);
+        char *name = given ? take_line(&given) : group_name(study, &study->row[k]);
         int group = 0;
         while (group < study->n_group &&
                strcmp(name, json_string_value(
@@ -252,7 +274,8 @@ static void shorten_names(struct study *study)
 }
 
 // Names and groups need all rows, so they come after the reading.
-struct study *study_of(const char *const *paths, int n, const char *output)
+struct study *study_of(const char *const *paths, int n, const char *groups,
+                       const char *output)
 {
     char **folders = run_folders(paths, n, &n);
     if (!folders) return NULL;
@@ -266,7 +289,7 @@ struct study *study_of(const char *const *paths, int n, const char *output)
     free(folders);
     shorten_names(study);
     find_differences(study);
-    find_groups(study);
+    find_groups(study, groups);
     return study;
 }
 

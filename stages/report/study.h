@@ -10,8 +10,10 @@ struct study;
 // Of the runs in PATHS (N): several folders, or one that holds no artifact itself but
 // folders with runs. NULL where they are neither. Links lead from the folder of OUTPUT
 // to each run's report.html that is there. The caller frees it with study_free. Exits
-// 65 where a folder is not a run that dries.
-struct study *study_of(const char *const *paths, int n, const char *output);
+// 65 where a folder is not a run that dries. GROUPS has the name of each run's group,
+// in lines, as many as runs; NULL: groups and names are what of the scenes differs.
+struct study *study_of(const char *const *paths, int n, const char *groups,
+                       const char *output);
 void study_free(struct study *study);
 
 // How many runs and groups, and how many bonds broke on average in the first three.

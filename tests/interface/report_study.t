@@ -113,6 +113,11 @@ drawn = re.findall(r"<figure><figcaption>([^<]*)</figcaption><svg[^>]* aria-labe
 ok(len(drawn) == page.count("<figure>") and drawn[0] == ("broken", "broken") and all(a == b and a in [name.strip() for name in head] for a, b in drawn),
    "every strip is headed by what it shows", drawn)
 ok(page.count("<circle") % 6 == 0 and page.count("<circle") >= 18, "a point a run in every strip", page.count("<circle"))
+run("report", "--set", "groups=" + json.dumps("\n".join(["slow & calm"] * 3 + ["fast"] * 3)), *paths, "-o", at("study/named.html"))
+ok("slow & calm: " in html.unescape(open(at("study/named.html")).read()) and "liquid inviscid: " not in open(at("study/named.html")).read(),
+   "groups have the names that are given")
+ended = refused("--set", "groups=one", *paths, "-o", at("study/named.html"))
+ok(ended == (65, "report: report.groups: must have a line for each of 6 runs, has 1\n"), "a name is missing: refused", ended)
 run("report", *paths[:3], "-o", at("study/one.html"))
 ok("here is one, of runs that differ in seeds at most" in open(at("study/one.html")).read(), "one group is not tested")
 run("report", at("study/inviscid"), "-o", at("study/below.html"))

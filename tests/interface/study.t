@@ -14,7 +14,8 @@ import sys
 import h5py
 import numpy as np
 
-sys.path.insert(0, "tests")
+sys.path[:0] = ["tests", "pipelines/lib", "pipelines/study"]
+from definition import read_measure
 from tap import BIN, SCENE, done, ok, read, run, scratch
 
 STUDY = os.path.abspath("pipelines/study/study")
@@ -130,6 +131,12 @@ theirs = tested["test"]["cracks"]["total"]
 ok(mine["student_p"] == theirs["paired_t"]["p"] and mine["wilcoxon_p"] == theirs["wilcoxon"]["p"],
    "tests are those of crackstats", f"{mine} {theirs}")
 ok(all(os.path.getsize(at("runs/small", name)) > 1000 for name in ("figure.svg", "study.html")), "a figure and a page")
+with open(at("runs/small/study.html"), encoding="utf-8") as lines:
+    named = set(re.findall(r">(liquid [^<]*)</text>", lines.read()))
+ok(named == {f"liquid {liquid}, strength {strength}" for liquid in ("inviscid", "immobile") for strength in (2000, 6000)},
+   "whose groups have the names of the axes", named)
+ok([read_measure(m, "").title for m in ("drying:summary.breakthrough_saturation", "cracks.total", {"path": "cracks.total", "name": "n_c"})]
+   == ["breakthrough saturation", "cracks.total", "n_c"], "titles in words")
 
 # A table's points are in the order of its rows, which need not be that of its values.
 cases = [("uniform", "fixed"), ("front", "free"), ("uniform", "free"), ("front", "fixed")]
