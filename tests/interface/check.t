@@ -121,6 +121,21 @@ for title, table in tables.items():
         file.write("\n".join(table) + "\n")
     told = check(at("table"), *near)[1]
     ok({**told, "inputs": []} == {**check(good, *near)[1], "inputs": []}, title, told["findings"])
+# Units that a heading names for all four columns are told, and no others guessed; pack reads the numbers as they stand.
+told = {}
+for case, heading, scale in (("mm", "X (mm),Y (mm),Z (mm),R (mm)", 1e-3), ("µm", "x [µm];y [µm];z [µm];radius [µm]", 1e-6),
+                             ("cm", 'x ( cm ),"y (cm)",z (cm),r (cm)', 1e-2), ("m", "x (m),y (m),z (m),r (m)", 1),
+                             ("mixed", "x (mm),y (mm),z (mm),r (um)", 1), ("one", "x (mm),y,z,r", 1)):
+    with open(at("table"), "w", encoding="utf-8") as file:
+        file.write("\n".join([heading] + [";,"["," in heading].join(repr(v / scale) for v in (*p, a)) for p, a in zip(x.tolist(), r.tolist())]) + "\n")
+    named = [f["text"] for f in check(at("table"), *near)[1]["findings"] if f["name"] == "units"]
+    warned = call("pack", *sets("method=import"), *near, at("table"), "-o", at("packed"))[2]
+    told[case] = [re.findall("heading.*import.scale=([0-9.e-]+)$", text.strip()) for text in (*named, warned)]
+    if scale < 1:
+        mended = check(at("table"), *near, *sets(f"import.scale={scale:g}"))[1]
+        ok("units" not in names(mended) and np.isclose(mended["radius"]["median"], quantiles[2]), f"{case}: right with its scale", mended["findings"])
+ok(told == {"mm": [["0.001"], ["0.001"]], "µm": [["1e-06"], ["1e-06"]], "cm": [["0.01"], ["0.01"]], "m": [[]], "mixed": [[]], "one": [[]]},
+   "units that a heading names are told", told)
 long = b"".join(b"%d 0 0 0.5\n" % k for k in range(20000))
 for title, heading in ("with the mark of Windows", b"\xef\xbb\xbf"), ("with names of columns", b"x y z r\n"):
     said = subprocess.run([f"{BIN}/check", "-o", "-"], input=heading + long, capture_output=True).stdout

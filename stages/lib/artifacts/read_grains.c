@@ -17,13 +17,14 @@
 #include <string.h>
 
 static struct packing read_lines(const char *path, struct bytes text, int64_t frame,
-                                 json_t *inputs)
+                                 double *unit, json_t *inputs)
 {
     struct packing packing;
     struct reason reason;
-    const enum status status = is_lammps(&text)
-                                   ? import_lammps(&text, frame, &packing, &reason)
-                                   : import_text(&text, &packing, &reason);
+    const bool is_dump = is_lammps(&text);
+    if (is_dump) *unit = lammps_unit(&text);
+    const enum status status = is_dump ? import_lammps(&text, frame, &packing, &reason)
+                                       : import_text(&text, &packing, unit, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
     char digest[65];
     sha256(text.data, text.size, digest);
@@ -70,10 +71,12 @@ struct packing read_grains(const char *path, const char *schema, int64_t frame,
     if (!bytes.size && !strcmp(path, "-"))
         die(STATUS_BAD_DATA, "standard input: no grains: method=import takes them from "
                              "an input, make run from IMPORT=FILE");
-    if (unit) *unit = is_lammps(&bytes) ? lammps_unit(&bytes) : 0;
+    double of_text = 0;
+    if (unit) *unit = 0;
     if (has_box) *has_box = is_hdf5(&bytes) || is_lammps(&bytes);
     if (is_hdf5(&bytes)) return read_artifact(path, bytes, schema, inputs);
-    const struct packing packing = read_lines(path, bytes, frame, inputs);
+    const struct packing packing = read_lines(path, bytes, frame, &of_text, inputs);
+    if (unit) *unit = of_text;
     bytes_free(&bytes);
     return packing;
 }

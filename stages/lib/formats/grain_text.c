@@ -145,10 +145,11 @@ static bool is_blank(const char *line)
 }
 
 // copy_text first, because strsep cuts lines in place and strtod needs an end. O(n).
-enum status import_text(const struct bytes *text, struct packing *packing,
+enum status import_text(const struct bytes *text, struct packing *packing, double *unit,
                         struct reason *reason)
 {
     *packing = (struct packing){0};
+    *unit = 0;
     char *copy = NULL;
     enum status status = copy_text(text, &copy, reason);
     if (status) return status;
@@ -162,6 +163,7 @@ enum status import_text(const struct bytes *text, struct packing *packing,
         if (is_blank(line)) continue;
         const bool names = first && read_heading(line, strlen(line), &heading);
         is_named = is_named || names;
+        if (names) *unit = heading.unit;
         if (!names)
             status = read_grain(line, is_named ? &heading : NULL, number, first, grain,
                                 reason);

@@ -13,9 +13,10 @@
 
 // Grains from text, one "x y z r" a line in metres, perhaps below the names of columns
 // (heading.h); "#" begins a comment. The box is theirs (lowest and highest grain
-// surfaces). STATUS_BAD_DATA with the line in REASON. On success the caller frees
-// *PACKING.
-enum status import_text(const struct bytes *text, struct packing *packing,
+// surfaces). UNIT: metres a unit of length, by the names of columns; 0 where that is a
+// metre, or they name none. STATUS_BAD_DATA with the line in REASON. On success the
+// caller frees *PACKING.
+enum status import_text(const struct bytes *text, struct packing *packing, double *unit,
                         struct reason *reason);
 
 // Walls where the grains end.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names count in upper and lower case, with or without quotes, and with a unit in
-// brackets, x (mm), which is left to people: numbers are taken as they stand. Fields
+// brackets, x (mm). Numbers are taken as they stand: a unit that all four columns name
+// is told to the caller. Fields
 // may be empty, except between blanks. Fields of other columns may hold anything but
 // separators.
 #include "formats/heading.h"
@@ -54,9 +55,40 @@ static int named(struct field field)
     return -1;
 }
 
+// In brackets behind the name; 0 where none is, or another. Of the two signs for micro
+// one is a Greek letter.
+static double unit_of(struct field field)
+{
+    static const struct {
+        const char *name;
+        double metres;
+    } units[] = {{"m", 1},     {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6},
+                 {"µm", 1e-6}, {"μm", 1e-6}, {"nm", 1e-9}};
+    size_t from = 0, to;
+    while (from < field.size && !strchr("([", field.at[from]))
+        from++;
+    for (from++; from < field.size && isspace((unsigned char)field.at[from]);)
+        from++;
+    for (to = from; to < field.size && !strchr(")] \t", field.at[to]);)
+        to++;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (to < field.size && strlen(units[k].name) == to - from &&
+            !strncmp(units[k].name, field.at + from, to - from))
+            return units[k].metres;
+    return 0;
+}
+
+static double common_unit(const double unit[4])
+{
+    for (int k = 1; k < 4; k++)
+        if (unit[k] != unit[0]) return 0;
+    return unit[0] == 1 ? 0 : unit[0];
+}
+
 bool read_heading(const char *line, size_t size, struct heading *heading)
 {
-    *heading = (struct heading){{-1, -1, -1, -1}, ' '};
+    *heading = (struct heading){{-1, -1, -1, -1}, ' ', 0};
+    double unit[4] = {0};
     for (const char *mark = ";\t,"; *mark && heading->separator == ' '; mark++)
         if (memchr(line, *mark, size)) heading->separator = *mark;
     struct field field;
@@ -65,10 +97,13 @@ bool read_heading(const char *line, size_t size, struct heading *heading)
          column++) {
         const int k = named(field);
         if (k >= 0 && heading->column[k] >= 0) return false;
-        if (k >= 0) heading->column[k] = column;
+        if (k < 0) continue;
+        heading->column[k] = column;
+        unit[k] = unit_of(field);
     }
     for (int k = 0; k < 4; k++)
         if (heading->column[k] < 0) return false;
+    heading->unit = common_unit(unit);
     return true;
 }
 

@@ -9,6 +9,7 @@
 struct heading {
     int column[4];  // of x, y, z and the radius, from 0
     char separator; // between fields; ' ': any number of blanks
+    double unit;    // m, if all four name the same other unit than this; 0: not so
 };
 
 // Whether LINE names x, y, z and r (or radius), each once. SIZE: of the line.

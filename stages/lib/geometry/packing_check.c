@@ -60,8 +60,8 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
     int k = 1;
     if (facts->unit > 0) {
         add_finding(findings, FINDING_WRONG, "units",
-                    "by its ITEM: UNITS the dump has lengths in units of %g m, which "
-                    "were taken for metres: pack.import.scale=%g",
+                    "by its heading (of a dump ITEM: UNITS) the file has lengths in "
+                    "units of %g m, which were taken for metres: pack.import.scale=%g",
                     facts->unit, facts->unit);
         return;
     }
