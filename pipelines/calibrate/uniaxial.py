@@ -76,10 +76,10 @@ def components(count, pairs):
 
 
 class Specimen:
-    """The packing of SCENE, made in FOLDER; tests of it leave their files there."""
+    """The packing of SCENE, made in FOLDER; tests of it leave their files there. Each is told, unless QUIET."""
 
-    def __init__(self, scene, folder, inputs=()):
-        self.scene, self.folder, self.tests = scene, folder, 0
+    def __init__(self, scene, folder, inputs=(), quiet=False):
+        self.scene, self.folder, self.quiet, self.tests = scene, folder, quiet, 0
         self.packing = os.path.join(folder, "packing.h5")
         self.stage("pack", *inputs, "-o", self.packing)
         with artifact(self.packing, "packing") as file:
@@ -139,10 +139,10 @@ class Specimen:
                 file["bonds/particles"], file["bonds/relative_strength"] = self.gripped(axis)
 
     def pull(self, axis, stresses, bond, how):
-        """The response to STRESSES, an open file. People who wait are told."""
-        self.tests += 1
-        if sys.stderr.isatty():
-            print(f"  test {self.tests}, along {'xyz'[axis]}", end="\r", file=sys.stderr, flush=True)
+        """The response to STRESSES, an open file."""
+        if bond:
+            self.tests += 1
+            self.tell(axis, stresses, bond)
         forces, response = (os.path.join(self.folder, name) for name in ("forces.h5", "response.h5"))
         self.write_forces(forces, axis, stresses)
         settings = (*(f"{key}={value!r}" for key, value in bond.items()), "support=free", "gravity=0", "snapshots=[0]",
@@ -151,6 +151,15 @@ class Specimen:
             settings += "bond.by=packing", "bond.strength.distribution=one"
         self.stage("dem-replay", *(word for setting in settings for word in ("-s", setting)), forces, "-o", response)
         return artifact(response, "response")
+
+    def tell(self, axis, stresses, bond):
+        """What is tested next, in a line."""
+        if bond["bond.normal_strength"] == UNBREAKABLE:
+            what = f"modulus and Poisson ratio with {bond['bond.shear_stiffness'] / bond['bond.normal_stiffness']:.4g} as shear over normal stiffness"
+        else:
+            what = f"strength, under stresses up to {max(stresses):.4g} Pa"
+        if not self.quiet:
+            print(f"test {self.tests}, along {'xyz'[axis]}: {what}", file=sys.stderr, flush=True)
 
     def moduli(self, axis, bond, how=ELASTIC):
         """E and nu of bonds that do not break."""
@@ -220,6 +229,13 @@ class Specimen:
 
 
 # ---- tables -----------------------------------------------------------------------------
+
+def quiet_asked():
+    """Whether -q is among the words of the call, which it is taken from."""
+    quiet = "-q" in sys.argv[1:]
+    sys.argv[1:] = [word for word in sys.argv[1:] if word != "-q"]
+    return quiet
+
 
 def axes_asked():
     """Those of AXES in the environment, x, y and z unless it says."""

@@ -39,6 +39,8 @@ LATTICE = {"pack": {"method": "cubic", "counts": [4, 4, 8], "radius": R, "bonds"
            "dem-replay": {"bond": {"normal_stiffness": 1e12, "shear_stiffness": 2e12, "normal_strength": 3e5,
                                    "shear_strength": 5e5, "radius_fraction": FRACTION}}}
 said = calibrate(LATTICE, "2e9", "none", "1e6")
+lines = said.stderr.splitlines()
+ok(len(lines) > 3 and all(line.startswith(f"test {k}, along z: ") for k, line in enumerate(lines, 1)), "a line for each test", lines)
 area, distance = pi * (FRACTION * R)**2, 2 * R
 modulus = bond()["normal_stiffness"] * area / distance if said.returncode == 0 else 0
 strength = bond()["normal_strength"] * area / distance**2 if said.returncode == 0 else 0
@@ -46,6 +48,9 @@ ok(said.returncode == 0 and abs(modulus / 2e9 - 1) < 1e-3, "a lattice has the mo
 ok(abs(strength / 1e6 - 1) < 0.01, "and their strength", strength)
 ok(abs(bond()["shear_stiffness"] / bond()["normal_stiffness"] - 2) < 1e-5 and abs(
     bond()["shear_strength"] / bond()["normal_strength"] * 3 / 5 - 1) < 1e-5, "ratios stay where no Poisson ratio is asked for", bond())
+first = bond()
+quiet = calibrate(LATTICE, "2e9", "none", "1e6", "-q")
+ok((quiet.returncode, quiet.stderr, quiet.stdout, bond()) == (0, "", said.stdout, first), "none with -q", quiet.stderr)
 ok(calibrate(LATTICE, "2e9", "0.2", "1e6").returncode == 65, "a cubic lattice has no Poisson ratio but 0")
 
 # ---- grains that settled ------------------------------------------------------------------
@@ -80,7 +85,7 @@ for what, scene, wanted, status, line in [
         ("contact bonds", {**SETTLED, "dem-replay": {"bond": {"kind": "contact"}}}, ("1e9", "none", "1e5"), 65, "must be parallel"),
         ("a periodic box", {"pack": {**LATTICE["pack"], "periodic": [True, True, True]}}, ("1e9", "none", "1e5"), 65, "pack.periodic"),
         ("an unknown key", {"pack": {"metod": "cubic"}}, ("1e9", "none", "1e5"), 65, "pack.metod: unknown key")]:
-    said = calibrate(scene, *wanted)
+    said = calibrate(scene, *wanted, "-q")
     ok(said.returncode == status and line in said.stderr and said.stderr.count("\n") == 1, f"{what} is refused",
        (said.returncode, said.stderr))
 ok(calibrate(SETTLED, "1e9", "none", "1e5", axes="q").returncode == 64, "and axes that there are not")
@@ -105,7 +110,7 @@ if said and float(said["bond.shear_stiffness"]) < 0.0999 * float(said["bond.norm
 os.chmod(at("bin/dem-replay"), 0o755)
 said = calibrate(SETTLED, "1e9", "0.15", "1e5", programs=at("bin"))
 ok(said.returncode == 0 and abs(numbers(said)[1] - 0.15) < 1e-3, "a Poisson ratio is found without such bodies", said.stderr)
-said = calibrate(SETTLED, "1e9", "0.9", "1e5", programs=at("bin"))
+said = calibrate(SETTLED, "1e9", "0.9", "1e5", "-q", programs=at("bin"))
 ok(said.returncode == 3 and "no equilibrium found along z with shear over normal stiffness 0.01" in said.stderr
    and said.stderr.count("\n") == 1, "and where there is no other, this is said", (said.returncode, said.stderr))
 done()
