@@ -25,4 +25,5 @@ def word(one; many): if . == 1 then "1 \(one)" else "\(.) \(many)" end;
         + (if $runs > 1 then " a run" else "" end) + ", under which "
         + ($u.cracks | few | word("bond"; "bonds")) + " broke"
         + (if $u.cracks == 0 then ""
-           else ": do as many break with twice the dem-replay.cycles and most_cycles (of equilibria: with engine=explicit)?" end) end)
+           else ". That count may change once grains come to rest: run again with dem-replay.cycles and most_cycles doubled "
+             + "(engine=quasi-static, which has no time steps: with engine=explicit) and compare" end) end)
