@@ -3,9 +3,10 @@
 // throat has emptied (or, in viscous liquid, filled or changed by saturation_step):
 //     rates from the vapour -> loss of each throat -> time to the first event
 //     -> gas fills what has emptied -> rates ...
-// Three kinds of step do this: event times (inviscid, immobile), flow (viscous), and
-// menisci with the Kelvin effect. All start from the same occupancy, record through the
-// same recorder and end at stop_saturation, where truncate_history cuts the last step.
+// Four kinds of step do this: event times (inviscid, immobile), flow (viscous), flow
+// that is kept, and menisci with the Kelvin effect. All start from the same occupancy,
+// record through the same recorder and end at stop_saturation, where truncate_history
+// cuts the last step.
 #include "drying.h"
 
 #include "basics/memory.h"

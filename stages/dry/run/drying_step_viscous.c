@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscous liquid: advances to the moment at which a throat has emptied or filled, or
+// Viscous liquid whose flow is found at each step: advances to the moment at which a throat has emptied or filled, or
 // has changed by saturation_step. Losses are constant in between:
 //     duration = min over throats of left / loss   (or lacking / -loss where it fills),
 //     liquid -= loss duration.

@@ -5,8 +5,8 @@
 //
 // An event in code order: rates from the vapour, losses of throats, the time to the
 // first that has emptied (or filled, or changed by saturation_step), gas into what has
-// emptied, the record. Which of the three steps does it depends on the conditions
-// alone: Kelvin first, else viscous, else inviscid or immobile.
+// emptied, the record. Which of the four steps does it depends on the conditions
+// alone: Kelvin first, else viscous, its flow kept or not, else inviscid or immobile.
 #pragma once
 
 #include "basics/compensated.h"
@@ -118,10 +118,11 @@ enum status check_vapour(const struct run *run, struct reason *reason);
 // many that throats must be refilling each other endlessly.
 enum status note_idle(struct run *run, bool idle, struct reason *reason);
 
-// Advance the run by one event: liquid without viscosity, or immobile; viscous liquid;
-// Kelvin effect, where run->losses must be those of now. STATUS_NOT_CONVERGED: nothing
-// evaporates any more, or the flow is not found. O(what changes); each ends with all
-// parts in agreement, so that a state may be kept there.
+// Advance the run by one event: liquid without viscosity, or immobile; viscous liquid,
+// its flow found at each event or kept; Kelvin effect, where run->losses must be those
+// of now. STATUS_NOT_CONVERGED: nothing evaporates any more, or the flow is not found.
+// O(what changes); each ends with all parts in agreement, so that a state may be kept
+// there.
 enum status drying_step_inviscid(struct run *run, struct reason *reason);
 enum status drying_step_viscous(struct run *run, struct reason *reason);
 enum status drying_step_kept_flow(struct run *run, struct reason *reason);
