@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Viscous liquid whose flow is found at each step: advances to the moment at which a throat has emptied or filled, or
-// has changed by saturation_step. Losses are constant in between:
+// Viscous liquid whose flow is found at each step: advances to the moment at which a
+// throat has emptied or filled, or has changed by saturation_step. Losses are constant
+// in between:
 //     duration = min over throats of left / loss   (or lacking / -loss where it fills),
 //     liquid -= loss duration.
 // The conductances follow the filled length, so saturation_step is the accuracy in
