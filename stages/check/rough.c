@@ -13,7 +13,7 @@
 #include <math.h>
 
 static const double GAIN_THAT_COUNTS = 0.05; // of the porosity
-static const double DIGITS = 2e-5;           // of the height: what places are told to
+static const double DIGITS = 2e-5; // of the height: rounding of printed places
 enum { FEWEST_ON_A_WALL = 3, FEWEST_GRAINS = 20 };
 
 static bool is_flat_top(const struct packing *packing)

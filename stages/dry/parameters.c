@@ -287,13 +287,12 @@ enum status complete_conditions(struct dry_parameters *parameters,
     conditions->layers = (int)parameters->layers;
     conditions->feet = (enum boundary_feet)parameters->feet;
     conditions->lumped = parameters->exchange == EXCHANGE_LUMPED;
+    const int n_throat = count_throats(network);
     if (isnan(conditions->step_interval))
-        conditions->step_interval =
-            count_throats(network) > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
-    conditions->films.step = film_step(parameters, count_throats(network));
-    conditions->flow_step = flow_step(parameters, count_throats(network));
-    conditions->vapour_step =
-        vapour_step(parameters, count_open_nodes(network, parameters->open_walls),
-                    count_throats(network));
+        conditions->step_interval = n_throat > MAX_THROATS_BY_EVENTS ? COARSE_STEPS : 0;
+    conditions->films.step = film_step(parameters, n_throat);
+    conditions->flow_step = flow_step(parameters, n_throat);
+    conditions->vapour_step = vapour_step(
+        parameters, count_open_nodes(network, parameters->open_walls), n_throat);
     return STATUS_OK;
 }

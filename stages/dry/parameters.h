@@ -48,6 +48,6 @@ enum status complete_conditions(struct dry_parameters *parameters,
 double film_step(const struct dry_parameters *parameters, double throats);
 double flow_step(const struct dry_parameters *parameters, double throats);
 
-// The same for vapour_step, with so many nodes on the open walls.
+// The same for vapour_step, with so many nodes on the open walls as well.
 double vapour_step(const struct dry_parameters *parameters, double open_nodes,
                    double throats);

@@ -22,7 +22,7 @@ enum suction_rule {
     // enters next: its meniscus is as curved as it can be, and the whole cluster has
     // the same pressure. With weight, the same potential: then gas enters next where
     // the suction less rho g z is least. Where films join all liquid (dry.rings=joined)
-    // a cluster is what was one when all throats were full.
+    // clusters stay as they were when all throats were full.
     SUCTION_CLUSTERS,
     // By the pressures of viscous liquid at the nodes: a throat has the mean of its
     // ends that are in liquid, or without one that of its own meniscus; linear in time

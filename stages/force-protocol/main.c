@@ -204,22 +204,17 @@ static json_t *parameters_of_drying(const struct artifact *input)
 }
 
 // The gravity with which the drying was computed; 0 if it does not say.
-static double gravity_of_drying(const struct artifact *input)
+static double gravity_of_drying(const json_t *drying)
 {
-    json_t *parameters = parameters_of_drying(input);
-    const double gravity = json_number_value(json_object_get(parameters, "gravity"));
-    json_decref(parameters);
+    const double gravity = json_number_value(json_object_get(drying, "gravity"));
     return gravity > 0 ? gravity : 0;
 }
 
 // Whether films without resistance joined all liquid in the drying.
-static bool films_joined(const struct artifact *input)
+static bool films_joined(const json_t *drying)
 {
-    json_t *parameters = parameters_of_drying(input);
-    const char *rings = json_string_value(json_object_get(parameters, "rings"));
-    const bool joined = rings && !strcmp(rings, "joined");
-    json_decref(parameters);
-    return joined;
+    const char *rings = json_string_value(json_object_get(drying, "rings"));
+    return rings && !strcmp(rings, "joined");
 }
 
 // The density follows from the mass of liquid and the volume it filled, so that it is
@@ -508,8 +503,10 @@ int main(int argc, char **argv)
     char difference[300], model[1400];
     complete_liquid(&parameters, input, difference, sizeof difference);
     struct suction_law law = find_law(&network, &parameters, input->path);
-    law.joined = films_joined(input);
-    if (isnan(parameters.gravity)) parameters.gravity = gravity_of_drying(input);
+    json_t *drying = parameters_of_drying(input);
+    law.joined = films_joined(drying);
+    if (isnan(parameters.gravity)) parameters.gravity = gravity_of_drying(drying);
+    json_decref(drying);
     if (*difference && !invocation.quiet) report("%s", difference);
 
     struct sectors sectors;

@@ -226,8 +226,8 @@ static void make_bonds(struct packing *packing, const struct contacts *contacts,
                parameters->touching_gap);
 }
 
-// A porosity that is more than 0.01 above that of the same grains between the heights
-// of the cut is told: the rest is void between grains and a flat end.
+// Reports a porosity that is more than 0.01 above that of the same grains between the
+// heights of the cut: the rest is void between grains and a flat end.
 static void tell_ends(const struct pack_parameters *parameters,
                       const struct packing *packing)
 {

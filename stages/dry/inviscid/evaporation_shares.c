@@ -107,12 +107,10 @@ void share_by_node(struct emptying_times *times, int node)
     const struct occupancy *occupancy = times->occupancy;
     const int begin = occupancy->incidence.offset[node];
     const int end = occupancy->incidence.offset[node + 1];
-    double sum = 0;
-    for (int k = begin; k < end; k++) {
+    for (int k = begin; k < end; k++)
         if (times->share_place[k] >= 0) remove_share(times, times->share_place[k]);
-        sum += liquid_section(occupancy, occupancy->incidence.throat[k]);
-    }
     if (!(vapour_evaporation(&occupancy->vapour, node) > 0)) return;
+    const double sum = liquid_sections_at(occupancy, node);
     for (int k = begin; k < end; k++) {
         const double section =
             liquid_section(occupancy, occupancy->incidence.throat[k]);

@@ -8,9 +8,11 @@
 // so that the losses add up to what the cluster evaporates (viscous_events.h). The flow
 // is found again when throats with flow->step of the cluster's liquid have emptied or
 // refilled, when it evaporates so much more or less (also as parts leave it), or when
-// the scale is far from 1: then the throat that emptied was one that fed the others. To
-// let all potentials fall alike until others feed them, as without viscosity, would
-// save three of four solutions at 1e-6 m2/s, but errs up to four times as much.
+// the scale is far from 1: then a throat that fed the others has emptied.
+//
+// Tried instead of a scale: all potentials fall by the same amount until other menisci
+// feed the cluster, as without viscosity. At 1e-6 m2/s this saves three of four
+// solutions, but the error is up to four times as large.
 #include "kept_flow.h"
 
 #include <math.h>

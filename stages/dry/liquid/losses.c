@@ -32,6 +32,15 @@ double liquid_section(const struct occupancy *occupancy, int throat)
     return occupancy->volume[throat] / occupancy->network->throat_length[throat];
 }
 
+double liquid_sections_at(const struct occupancy *occupancy, int node)
+{
+    const struct incidence *incidence = &occupancy->incidence;
+    double sum = 0;
+    for (int k = incidence->offset[node]; k < incidence->offset[node + 1]; k++)
+        sum += liquid_section(occupancy, incidence->throat[k]);
+    return sum;
+}
+
 static void share_evaporation(struct losses *losses, const struct occupancy *occupancy,
                               int node)
 {
@@ -39,9 +48,7 @@ static void share_evaporation(struct losses *losses, const struct occupancy *occ
     if (!(evaporation > 0)) return; // shut in
     const int begin = occupancy->incidence.offset[node];
     const int end = occupancy->incidence.offset[node + 1];
-    double section = 0;
-    for (int k = begin; k < end; k++)
-        section += liquid_section(occupancy, occupancy->incidence.throat[k]);
+    const double section = liquid_sections_at(occupancy, node);
     for (int k = begin; k < end; k++) {
         const int throat = occupancy->incidence.throat[k];
         const double share =

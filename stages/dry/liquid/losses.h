@@ -36,4 +36,7 @@ void losses_sort(struct losses *losses);
 // proportional to its cross-section; 0 if it holds no liquid.
 double liquid_section(const struct occupancy *occupancy, int throat);
 
+// Their sum over the throats at NODE.
+double liquid_sections_at(const struct occupancy *occupancy, int node);
+
 void losses_free(struct losses *losses);

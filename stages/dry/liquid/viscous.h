@@ -65,8 +65,8 @@ enum status liquid_flow_find(struct liquid_flow *flow,
                              const double *evaporation, struct loss *loss, int *n_loss,
                              struct reason *reason);
 
-// The same for the throats of one CLUSTER, with the evaporation given last, which is
-// kept and may have changed: its flow is found anew.
+// The same for the throats of one CLUSTER. It reads the array EVAPORATION of the last
+// call above, which the caller may have changed since.
 enum status liquid_flow_find_in(struct liquid_flow *flow, int cluster,
                                 struct loss *loss, int *n_loss, struct reason *reason);
 

@@ -7,9 +7,9 @@
 //     in a full throat to which more flows stops (kept_flow.h);
 //     each cluster touched gets a new scale, or its flow is found again.
 // A change of the scale moves no end: they are readings of the cluster's clock,
-//     reading = clock + scale (now - time),
-// both since its flow was found, as flows between menisci may be 1e9 times what
-// evaporates, and end in so small a part of the time before.
+//     reading = clock + scale (now - time).
+// Both times count from when its flow was found: flows between menisci may be 1e9 times
+// what evaporates, and last so small a part of the time since the start.
 // Sums are changed by differences of compensated numbers, and added up whenever a flow
 // is found.
 #include "viscous_events.h"
@@ -182,9 +182,7 @@ static void share_by_node(struct viscous_events *events, int node)
     const double evaporation =
         events->pace * vapour_evaporation(&occupancy->vapour, node);
     const int from = incidence->offset[node], to = incidence->offset[node + 1];
-    double section = 0;
-    for (int k = from; k < to; k++)
-        section += liquid_section(occupancy, incidence->throat[k]);
+    const double section = liquid_sections_at(occupancy, node);
     for (int k = from; k < to; k++) {
         const int throat = incidence->throat[k];
         const double its = liquid_section(occupancy, throat);
@@ -243,9 +241,8 @@ static void stop_all(struct viscous_events *events, int cluster)
         for (int k = 0; k < its->queue[q].n; k++) {
             const int throat = its->queue[q].item[k];
             bring_up(events, cluster, throat);
+            events->rate[throat] = 0;
         }
-        for (int k = 0; k < its->queue[q].n; k++)
-            events->rate[its->queue[q].item[k]] = 0;
         indexed_heap_clear(&its->queue[q], events->place);
     }
     its->losing = its->refilling = (struct compensated){0};
@@ -385,10 +382,10 @@ void viscous_events_free(struct viscous_events *events)
 
 void viscous_events_forget(struct viscous_events *events)
 {
-    for (int c = 0; c < events->capacity; c++)
+    for (int c = 0; c < events->capacity; c++) {
         stop_all(events, c);
-    for (int c = 0; c < events->capacity; c++)
         events->cluster[c].found = (struct compensated){0};
+    }
     indexed_heap_clear(&events->queue, events->next_place);
     events->now = (struct compensated){0};
     events->must_find = true;

@@ -3,13 +3,13 @@
 // vapour (vapour_step) are kept for a while: an event costs what it changes, and not
 // all menisci.
 //
-// Between two solutions of its flow the throats of a cluster lose
-//     loss = scale rate  where it is above 0,  loss = rate  where they refill (below
-//     0), scale = (evaporation + refilling) / losing,
-// with sums over the cluster's throats, so that it loses what it evaporates. A throat
-// that empties hands its loss to the others in this way: a change that the next
-// solution spreads as the flow does. The cluster has a clock that runs SCALE times as
-// fast as time: by it throats empty at fixed readings, whatever the scale.
+// Between two solutions of its flow a throat of a cluster loses
+//     loss = scale rate,   and where it refills   loss = rate, below 0,
+//     scale = (evaporation + refilling) / losing,
+// with sums over the cluster's throats: the cluster loses what it evaporates. In
+// this way a throat that empties hands its loss to the others; the next solution
+// spreads it as the flow does. The cluster has a clock that runs SCALE times as fast as
+// time: by it throats empty at fixed readings, whatever the scale.
 //
 // Where vapour is kept everything happens vapour_pace times as fast (vapour.h), from 1
 // just after the vapour was found to more before it is found again. Liquid does not
@@ -75,7 +75,7 @@ void viscous_events_free(struct viscous_events *events);
 // found.
 void viscous_events_forget(struct viscous_events *events);
 
-// Finds all losses anew, if they are to be found. STATUS_NOT_CONVERGED as
+// Finds all losses if viscous_events_forget has come before. STATUS_NOT_CONVERGED as
 // liquid_flow_find.
 enum status viscous_events_find(struct viscous_events *events, struct reason *reason);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Names count in upper and lower case, with or without quotes, and with a unit in
-// brackets, x (mm). Numbers are taken as they stand: a unit that all four columns name
-// is told to the caller. Fields
-// may be empty, except between blanks. Fields of other columns may hold anything but
-// separators.
+// brackets, x (mm). Numbers are taken as they stand; the caller learns of a unit that
+// all four columns name. Fields may be empty, except between blanks. Fields of other
+// columns may hold anything but separators.
 #include "formats/heading.h"
 
 #include <ctype.h>

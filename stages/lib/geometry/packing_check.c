@@ -203,7 +203,8 @@ static void say_ends(const struct packing_facts *facts, struct vector low,
                 n, high.y, n, high.z);
 }
 
-// A wider box is told by say_ends as well. Cylinders of pack stand along z.
+// Of a box wider than the grains say_ends says so as well. Cylinders of pack stand
+// along z.
 static void judge_roundness(const struct packing_facts *facts,
                             struct findings *findings)
 {
