@@ -157,8 +157,8 @@ const struct parameter dry_table[] = {
      .text =
          "largest sum of the errors of evaporation, over the rate, until the vapour "
          "is found again in all of the gas (until then it changes only near nodes "
-         "that dry); 0: found at each event; null: 0 up to 6000 nodes on the open "
-         "walls, 0.2 above, 0.1 with rings=films, but 0 with kelvin, flow_step=0 in "
+         "that dry); 0: found at each event; null: 0 up to 3000 nodes on the open "
+         "walls, 0.3 above, 0.15 with rings=films, but 0 with kelvin, flow_step=0 in "
          "viscous liquid, or a vapour_tolerance"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),

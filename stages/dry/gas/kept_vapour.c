@@ -36,6 +36,30 @@ static void enter_gas(struct kept_vapour *kept, int site)
         if (links->value[k] > 0) links->diagonal[site] += links->value[k];
 }
 
+// As large as all sites in the gas need.
+static struct conductance_matrix
+room_for_balances(const struct conductance_matrix *links)
+{
+    const int n = links->n, room = links->offset[n];
+    return (struct conductance_matrix){.n_all = 2 * n + 1,
+                                       .offset = NEW_ARRAY(int, n + 1),
+                                       .column = NEW_ARRAY(int, room),
+                                       .value = NEW_ARRAY(double, room),
+                                       .diagonal = NEW_ARRAY(double, n)};
+}
+
+static void list_beside_air(struct kept_vapour *kept)
+{
+    const struct conductance_matrix *links = &kept->links;
+    kept->beside_air = NEW_ARRAY(int, links->n);
+    for (int i = 0; i < links->n; i++) {
+        bool is_beside = false;
+        for (int k = links->offset[i]; k < links->offset[i + 1]; k++)
+            is_beside |= links->column[k] == links->n;
+        if (is_beside) kept->beside_air[kept->n_beside_air++] = i;
+    }
+}
+
 struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_open,
                                        const struct link *link, int *order, double step)
 {
@@ -56,6 +80,8 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
         .queue = NEW_ARRAY(int, n_site),
         .is_queued = NEW_ARRAY(bool, n_site)};
     struct conductance_matrix *links = &kept->links;
+    kept->balances = room_for_balances(links);
+    list_beside_air(kept);
     for (int k = 0; k < links->offset[n_site]; k++)
         links->value[k] *= -1;
     for (int l = 0; l < n_open; l++)
@@ -63,7 +89,6 @@ struct kept_vapour *kept_vapour_create(int n_wet, int n_site, int n_link, int n_
     all_out_of_gas(kept);
     for (int i = n_wet; i < n_site; i++)
         enter_gas(kept, i);
-    kept_vapour_find_flows(kept);
     kept_vapour_solve(kept);
     return kept;
 }
@@ -73,7 +98,9 @@ void kept_vapour_free(struct kept_vapour *kept)
     if (!kept) return;
     air_links_free(&kept->air);
     conductance_matrix_free(&kept->links);
-    approximate_cholesky_free(kept->factor);
+    conductance_matrix_free(&kept->balances);
+    gas_preconditioner_free(kept->preconditioner);
+    free(kept->beside_air);
     free(kept->level);
     free(kept->residual);
     free(kept->row_site);
@@ -197,7 +224,7 @@ double kept_vapour_pace(const struct kept_vapour *kept)
 
 bool kept_vapour_may_be_kept(const struct kept_vapour *kept)
 {
-    return !kept->factor;
+    return !kept->preconditioner;
 }
 
 // Sites enter the gas again in their order, once the links between them are open.
@@ -220,8 +247,8 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
         kept->n_dried = 0;
         for (int r = 0; r < n_row; r++)
             enter_gas(kept, kept->row_site[r]);
-        approximate_cholesky_free(kept->factor);
-        kept->factor = NULL;
+        gas_preconditioner_free(kept->preconditioner);
+        kept->preconditioner = NULL;
     }
     stream_sums(stream, kept->level, n);
     stream_numbers(stream, kept->residual, n);

@@ -14,7 +14,7 @@
 #pragma once
 
 #include "elimination/air_links.h"
-#include "elimination/approximate_cholesky.h"
+#include "gas_preconditioner.h"
 
 // It owns its arrays. Sites are as in struct vapour; all is scaled (conditions.h).
 struct kept_vapour {
@@ -24,6 +24,8 @@ struct kept_vapour {
     // Links of all sites, those of throats with liquid below 0; the air is site n. The
     // diagonal is that of sites in the gas.
     struct conductance_matrix links;
+    int n_beside_air;
+    int *beside_air;           // (n_beside_air) sites with links to the air
     struct compensated *level; // (n) phi, 0 outside the gas
     double *residual;          // (n) 0 outside the gas
     double on_its_way;         // sum of residuals
@@ -45,10 +47,11 @@ struct kept_vapour {
     int *queue;      // (n) a ring of sites with much on its way
     bool *is_queued; // (n)
 
-    struct approximate_cholesky *factor;     // of the first rows; NULL: to be made
-    int n_factor;                            // rows
-    int factor_solutions, factor_iterations; // with it; counts what it took to make
-    bool failed;                             // potentials were not found
+    struct conductance_matrix balances;        // of the rows, when they were last found
+    struct gas_preconditioner *preconditioner; // NULL: to be made
+    int solutions;                             // with its inner rows
+    double cost; // what they and these took, in iterations
+    bool failed; // potentials were not found
 };
 
 // The air is not.
@@ -89,9 +92,7 @@ void kept_vapour_state(struct kept_vapour *kept, struct checkpoint_stream *strea
 // Whether a restored state is one of potentials.
 bool kept_vapour_fits(const struct kept_vapour *kept);
 
-// kept_vapour_solve.c: residuals, and what wet sites evaporate, from the potentials;
-// and finds all of them from given residuals.
-void kept_vapour_find_flows(struct kept_vapour *kept);
+// kept_vapour_solve.c: finds all potentials from those of before.
 void kept_vapour_solve(struct kept_vapour *kept);
 
 // Largest sum of the errors of what wet sites evaporate.

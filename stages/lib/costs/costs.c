@@ -41,7 +41,7 @@ static const double SMALL_BYTES = 22000, GRAIN_BYTES = 54, THROAT_BYTES = 107;
 static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
 
 // The vapour is found at each event up to so many nodes on the open walls.
-static const double MOST_OPEN_NODES_BY_EVENTS = 6000, KEPT_STEP = 0.2;
+static const double MOST_OPEN_NODES_BY_EVENTS = 3000, KEPT_STEP = 0.3;
 
 static struct cost cost_of(double seconds, double mebibytes)
 {

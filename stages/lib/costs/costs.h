@@ -57,7 +57,7 @@ struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact
                            double step);
 
 // dry.vapour_step by default with so many nodes on the open walls, without films. From
-// some 4000 on dryings are faster with it; below 6000 they stay exact.
+// some 1500 on dryings are faster with it; below 3000 they stay exact.
 double default_vapour_step(double open_nodes);
 
 // What the flow of viscous liquid adds, found at each event, or KEPT for a while.
