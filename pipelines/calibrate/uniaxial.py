@@ -13,6 +13,7 @@ import json
 import os
 import subprocess
 import sys
+from math import log
 
 import h5py
 import numpy as np
@@ -57,9 +58,14 @@ def scaled(bond, what, factor):
     return {key: value * (factor if key.endswith(what) else 1) for key, value in bond.items()}
 
 
+def strengths_of(bond):
+    """The weaker and the stronger."""
+    return sorted(bond[f"bond.{way}_strength"] for way in ("normal", "shear"))
+
+
 def stretch(bond):
-    """Of bonds where they break, m."""
-    return max(bond["bond.normal_strength"], bond["bond.shear_strength"]) / min(bond["bond.normal_stiffness"], bond["bond.shear_stiffness"])
+    """Of bonds where they break in the way in which they are weaker, m."""
+    return strengths_of(bond)[0] / min(bond["bond.normal_stiffness"], bond["bond.shear_stiffness"])
 
 
 def components(count, pairs):
@@ -201,11 +207,28 @@ class Specimen:
             carried.append(stress * np.minimum(*shares).sum())
         return np.array(carried)
 
+    def breaks(self, axis, stress, bond):
+        """Whether any bond breaks: not a matter of stiffness, so that nothing need move far."""
+        with self.pull(axis, [0, stress], scaled(bond, "stiffness", 1e6), FAST) as file:
+            return file["cracks/bond"].size > 0
+
+    def rising(self, axis, bond):
+        """Stresses that rise by an eighth, from one under which all bonds hold: far below their strength where they
+        are thin, or where they are far stronger in one way than in the other."""
+        weaker, stronger = strengths_of(bond)
+        if not weaker > 0:
+            refuse(65, f"{self.scene}: dem-replay.bond.normal_strength and .shear_strength must be above 0")
+        first = -60 - 20 * int(log(stronger / weaker) / (20 * log(1.125)))
+        for begin in range(first, first - 400, -20):
+            if not self.breaks(axis, stronger * 1.125**begin, bond):
+                return stronger * 1.125 ** np.arange(begin, 20)
+        return refuse(3, f"{self.scene}: {stronger * 1.125**begin:.3g} Pa along {'xyz'[axis]} breaks bonds of {weaker:.3g} Pa")
+
     def strength(self, axis, bond, steps=60):
         """The largest stress carried: first by stresses that grow by an eighth, then in STEPS around it.
         Where displacements are small, stiff bonds break under the same stresses, and keep them small."""
         stiff = scaled(bond, "stiffness", max(1, stretch(bond) / (1e-7 * self.r.mean())))
-        coarse = max(bond["bond.normal_strength"], bond["bond.shear_strength"]) * 1.125 ** np.arange(-60, 20)
+        coarse = self.rising(axis, stiff)
         most = 0
         for begin in range(0, len(coarse), 5):  # since a body in pieces is slow
             some = coarse[begin:begin + 5]

@@ -51,6 +51,9 @@ ok(abs(bond()["shear_stiffness"] / bond()["normal_stiffness"] - 2) < 1e-5 and ab
 first = bond()
 quiet = calibrate(LATTICE, "2e9", "none", "1e6", "-q")
 ok((quiet.returncode, quiet.stderr, quiet.stdout, bond()) == (0, "", said.stdout, first), "none with -q", quiet.stderr)
+said = calibrate({**LATTICE, "dem-replay": {"bond": {**LATTICE["dem-replay"]["bond"], "shear_strength": 1e20}}}, "2e9", "none", "1e6")
+strength = bond()["normal_strength"] * area / distance**2 if said.returncode == 0 else 0
+ok(abs(strength / 1e6 - 1) < 0.01, "bonds that do not shear off: the same strength", (said.stderr, strength))
 ok(calibrate(LATTICE, "2e9", "0.2", "1e6").returncode == 65, "a cubic lattice has no Poisson ratio but 0")
 
 # ---- grains that settled ------------------------------------------------------------------
@@ -68,6 +71,13 @@ slow = numbers(calibrate(scene, "slow", program="measure"))
 ok(abs(slow[0] / 1e9 - 1) < 0.02 and abs(slow[1] - 0.15) < 0.02 and abs(slow[2] / 1e5 - 1) < 0.02,
    "and has it by time steps with friction", slow)
 
+# A tenth as wide, a hundredth as strong, but for bending.
+borne = []
+for fraction in 0.5, 0.05:
+    scene = {**SETTLED, "dem-replay": {"bond": {**SETTLED["dem-replay"]["bond"], "radius_fraction": fraction}}}
+    borne += numbers(calibrate(scene, "fast", program="measure"))[2:]
+ok(0.5e-2 < borne[1] / borne[0] < 2e-2, "thin bonds bear in proportion to their sections, or nearly so", borne)
+
 # Unequal grains, one of which keeps a residual force of a few 1e-8 of the load.
 UNEQUAL = {"pack": {"method": "deposition", "count": 60, "radius": 12e-6, "seed": 3, "sizes": {"distribution": "lognormal", "spread": 0.35}},
            "dem-replay": {"normal_stiffness": 1.4e6, "shear_stiffness": 1.4e6,
@@ -82,6 +92,8 @@ for what, scene, wanted, status, line in [
         ("a Poisson ratio of 0.9", SETTLED, ("1e9", "0.9", "1e5"), 65, "POISSON_RATIO: bonds of this packing give"),
         ("a modulus in words", SETTLED, ("stiff", "none", "1e5"), 64, "YOUNG_MODULUS: must be a number above 0, got stiff"),
         ("a strength below 0", SETTLED, ("1e9", "none", "-1"), 64, "TENSILE_STRENGTH: must be a number above 0, got -1"),
+        ("bonds without strength", {**SETTLED, "dem-replay": {"bond": {"normal_strength": 0}}}, ("1e9", "none", "1e5"), 65,
+         "must be above 0"),
         ("contact bonds", {**SETTLED, "dem-replay": {"bond": {"kind": "contact"}}}, ("1e9", "none", "1e5"), 65, "must be parallel"),
         ("a periodic box", {"pack": {**LATTICE["pack"], "periodic": [True, True, True]}}, ("1e9", "none", "1e5"), 65, "pack.periodic"),
         ("an unknown key", {"pack": {"metod": "cubic"}}, ("1e9", "none", "1e5"), 65, "pack.metod: unknown key")]:
