@@ -3,7 +3,7 @@
 holds it. The layers are grips, as if glued to plates: grains of one that lie near each other are bonded, by
 bonds that do not break.
 
-    stress   = force / section of the packing's extent,
+    stress   = force / section of the packing's extent, round in a cylinder,
     strain   = symmetric part of the displacement gradient, by least squares over the grains of the
                middle half,
     E        = stress / strain along the force,   nu = - mean strain across / strain along,
@@ -13,7 +13,7 @@ import json
 import os
 import subprocess
 import sys
-from math import log
+from math import log, pi
 
 import h5py
 import numpy as np
@@ -26,6 +26,7 @@ LAYER = 3  # thickness of the end layers, mean radii
 GLUE = 1  # widest gap that it bridges, mean radii
 GLUED = 1e9  # strength of such bonds, over that of the others
 UNBREAKABLE = 1e30
+CYLINDER = 1  # of /domain/bodies/shape: along z
 # Equilibria without friction: between open contacts it hardly acts (docs/calibration.md).
 FAST = ("engine=quasi-static", "friction=0")
 # Among unequal grains one may keep a residual force of a few 1e-8 of the largest load: no equilibrium by the default
@@ -68,6 +69,16 @@ def stretch(bond):
     return strengths_of(bond)[0] / min(bond["bond.normal_stiffness"], bond["bond.shear_stiffness"])
 
 
+def read_bodies(packing):
+    """Corners of the box, and what bounds the grains besides it: shape, whether they lie within, corners around it; those
+    around the grains first."""
+    group = packing["domain"]
+    if "bodies" not in group:
+        return None, []
+    bodies = zip(*(group[f"bodies/{name}"][:] for name in ("shape", "within", "lower", "upper")))
+    return (group["lower"][:], group["upper"][:]), sorted(bodies, key=lambda body: -int(body[1]))
+
+
 def components(count, pairs):
     """For each grain a grain of its piece, the same for all of it."""
     of = np.arange(count)
@@ -92,6 +103,7 @@ class Specimen:
             self.x, self.r = file["particles/position"][:], file["particles/radius"][:]
             if file["domain/periodic"][:].any():
                 refuse(65, f"{scene}: pack.periodic: the packing has no ends to pull at")
+            self.domain, self.bodies = read_bodies(file)
         if len(self.r) < 8:
             refuse(65, f"{scene}: {len(self.r)} grains are too few to be pulled at")
         self.lower, self.upper = (self.x - self.r[:, None]).min(axis=0), (self.x + self.r[:, None]).max(axis=0)
@@ -110,7 +122,16 @@ class Specimen:
             refuse(ended.returncode, (ended.stderr.strip().splitlines() or [f"{name} failed"])[-1])
 
     def section(self, axis):
-        return np.prod(self.edge) / self.edge[axis]
+        """Of the body's extent: round in a cylinder, less the hole of a ring."""
+        section = np.prod(self.edge) / self.edge[axis]
+        for shape, within, lower, upper in self.bodies:
+            is_through = lower[2] <= self.domain[0][2] and upper[2] >= self.domain[1][2]
+            if shape != CYLINDER or axis != 2 or not is_through:
+                refuse(65, f"{self.scene}: pack.domain: sections of the body along {'xyz'[axis]} differ: only boxes, and cylinders and "
+                           "rings along z (AXES=z), are pulled at")
+            from_axis = np.linalg.norm(self.x[:, :2] - ((lower + upper) / 2)[:2], axis=1)
+            section = pi * (from_axis + self.r).max()**2 if within else section - pi * (from_axis - self.r).min()**2
+        return section
 
     def ends(self, axis):
         layer = LAYER * self.r.mean() * (1 - 1e-9)  # centres on its border are outside, at both ends

@@ -54,6 +54,17 @@ ok((quiet.returncode, quiet.stderr, quiet.stdout, bond()) == (0, "", said.stdout
 said = calibrate({**LATTICE, "dem-replay": {"bond": {**LATTICE["dem-replay"]["bond"], "shear_strength": 1e20}}}, "2e9", "none", "1e6")
 strength = bond()["normal_strength"] * area / distance**2 if said.returncode == 0 else 0
 ok(abs(strength / 1e6 - 1) < 0.01, "bonds that do not shear off: the same strength", (said.stderr, strength))
+
+# Columns in a cylinder, and around a hole: those farthest from the axis and nearest to it bound the section.
+ROUND = {"shape": "cylinder", "radius": 5 * R, "height": 16 * R}
+for domain, columns, section in [(ROUND, 13, pi * (5 * R)**2),
+                                 ({**ROUND, "shape": "ring", "radius": 8 * R, "inner_radius": 3 * R}, 20,
+                                  pi * ((34**0.5 + 1)**2 - (18**0.5 - 1)**2) * R**2)]:
+    said = calibrate({**LATTICE, "pack": {"method": "cubic", "radius": R, "bonds": "touching", "domain": domain}}, "2e9", "none", "1e6")
+    modulus = bond()["normal_stiffness"] * area * distance * columns / section if said.returncode == 0 else 0
+    strength = bond()["normal_strength"] * area * columns / section if said.returncode == 0 else 0
+    ok(abs(modulus / 2e9 - 1) < 1e-3 and abs(strength / 1e6 - 1) < 0.01, f"the section of a {domain['shape']} is round",
+       (said.stderr, modulus, strength))
 ok(calibrate(LATTICE, "2e9", "0.2", "1e6").returncode == 65, "a cubic lattice has no Poisson ratio but 0")
 
 # ---- grains that settled ------------------------------------------------------------------
@@ -95,6 +106,8 @@ for what, scene, wanted, status, line in [
         ("bonds without strength", {**SETTLED, "dem-replay": {"bond": {"normal_strength": 0}}}, ("1e9", "none", "1e5"), 65,
          "must be above 0"),
         ("contact bonds", {**SETTLED, "dem-replay": {"bond": {"kind": "contact"}}}, ("1e9", "none", "1e5"), 65, "must be parallel"),
+        ("a sphere", {**LATTICE, "pack": {"method": "cubic", "radius": R, "bonds": "touching",
+                                          "domain": {"shape": "sphere", "radius": 8 * R}}}, ("1e9", "none", "1e5"), 65, "pack.domain"),
         ("a periodic box", {"pack": {**LATTICE["pack"], "periodic": [True, True, True]}}, ("1e9", "none", "1e5"), 65, "pack.periodic"),
         ("an unknown key", {"pack": {"metod": "cubic"}}, ("1e9", "none", "1e5"), 65, "pack.metod: unknown key")]:
     said = calibrate(scene, *wanted, "-q")
