@@ -26,6 +26,7 @@ LAYER = 3  # thickness of the end layers, mean radii
 GLUE = 1  # widest gap that it bridges, mean radii
 GLUED = 1e9  # strength of such bonds, over that of the others
 UNBREAKABLE = 1e30
+MORE_BONDS = "pack.touching_gap (or dem-replay.bond.by=distance, bond.gap) joins more grains"
 CYLINDER = 1  # of /domain/bodies/shape: along z
 # Equilibria without friction: between open contacts it hardly acts (docs/calibration.md).
 FAST = ("engine=quasi-static", "friction=0")
@@ -146,12 +147,25 @@ class Specimen:
         strengths = np.concatenate([np.full(len(glued), GLUED), relative[~within]])
         return np.concatenate([glued, pairs[~within]]), strengths
 
+    def largest_piece(self, pairs):
+        """Which grains are in it."""
+        piece = components(len(self.r), pairs)
+        return piece == np.bincount(piece).argmax()
+
+    def shares(self, axis):
+        """Of the force on each end: those of the grains in its layer, in proportion to their sections. Grains that nothing
+        joins to the body bear none."""
+        joined = self.largest_piece(self.gripped(axis)[0]) if self.bonds else True
+        shares = [np.where(end & joined, self.r**2, 0) for end in self.ends(axis)]
+        if not all(share.any() for share in shares):
+            refuse(65, f"{self.scene}: bonds do not join the ends of the packing along {'xyz'[axis]}: {MORE_BONDS}")
+        return [share / share.sum() for share in shares]
+
     def write_forces(self, path, axis, stresses):
-        """Forces in proportion to the sections of the grains of each end layer, a stress a second."""
+        """Forces on each end layer, a stress a second."""
         force = np.zeros((len(stresses), len(self.r), 3))
-        for end, sign in zip(self.ends(axis), (-1, 1)):
-            share = np.where(end, self.r**2, 0)
-            force[:, :, axis] += sign * self.section(axis) * np.outer(stresses, share / share.sum())
+        for share, sign in zip(self.shares(axis), (-1, 1)):
+            force[:, :, axis] += sign * self.section(axis) * np.outer(stresses, share)
         with h5py.File(self.packing) as packing, h5py.File(path, "w") as file:
             copy_groups(packing, file, without=["bonds"] if self.bonds else [])
             file.attrs["schema"] = "craquelure/forces/1"
@@ -198,12 +212,9 @@ class Specimen:
                 refuse(3, f"{self.scene}: no equilibrium found along {'xyz'[axis]} with shear over normal stiffness "
                           f"{bond['bond.shear_stiffness'] / bond['bond.normal_stiffness']:.3g}: more bonds (pack.touching_gap) would "
                           "hold the body")
-        piece = components(len(self.r), pairs)
-        largest = piece == np.bincount(piece).argmax()
-        gauge = largest & (np.abs(self.x[:, axis] - self.middle[axis]) < self.edge[axis] / 4)
-        if gauge.sum() < 8 or not all((largest & end).any() for end in self.ends(axis)):
-            refuse(65, f"{self.scene}: bonds do not join the ends of the packing along {'xyz'[axis]}: "
-                       "pack.touching_gap (or dem-replay.bond.by=distance, bond.gap) joins more grains")
+        gauge = self.largest_piece(pairs) & (np.abs(self.x[:, axis] - self.middle[axis]) < self.edge[axis] / 4)
+        if gauge.sum() < 8:
+            refuse(65, f"{self.scene}: bonds join only {gauge.sum()} grains in the middle of the packing along {'xyz'[axis]}: {MORE_BONDS}")
         places = np.column_stack([np.ones(gauge.sum()), self.x[gauge] - self.middle])
         gradient = np.linalg.lstsq(places, moved[gauge], rcond=None)[0][1:]
         strain = np.diag(gradient)
@@ -218,7 +229,7 @@ class Specimen:
         piece. Forces on grains that were torn off an end count no more."""
         with self.pull(axis, stresses, bond, how) as file:
             pairs, broken, time = file["bonds/particles"][:], file["cracks/bond"][:], file["cracks/time"][:]
-        ends = [np.where(end, self.r**2, 0) / self.r[end].dot(self.r[end]) for end in self.ends(axis)]
+        ends = self.shares(axis)
         carried = []
         for k, stress in enumerate(stresses):
             intact = np.ones(len(pairs), bool)

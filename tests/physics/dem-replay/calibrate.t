@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Bonds from a material: a lattice in closed form, and an irregular packing tested again by the other
 # engine, with friction.
+import itertools
 import json
 import os
 import subprocess
@@ -65,6 +66,17 @@ for domain, columns, section in [(ROUND, 13, pi * (5 * R)**2),
     strength = bond()["normal_strength"] * area * columns / section if said.returncode == 0 else 0
     ok(abs(modulus / 2e9 - 1) < 1e-3 and abs(strength / 1e6 - 1) < 0.01, f"the section of a {domain['shape']} is round",
        (said.stderr, modulus, strength))
+
+# Beside 16 columns, as many ends of columns that nothing joins to them: the columns bear all force.
+with open(at("grains.txt"), "w", encoding="utf-8") as file:
+    for i, j, k in itertools.product((*range(4), *range(6, 10)), range(4), range(8)):
+        if i < 4 or k in (0, 7):
+            file.write(f"{(2 * i + 1) * R} {(2 * j + 1) * R} {(2 * k + 1) * R} {R}\n")
+said = calibrate({**LATTICE, "pack": {"method": "import", "bonds": "touching"}}, "2e9", "none", "1e6", at("grains.txt"))
+modulus = bond()["normal_stiffness"] * area * distance * 16 / (20 * R * 8 * R) if said.returncode == 0 else 0
+strength = bond()["normal_strength"] * area * 16 / (20 * R * 8 * R) if said.returncode == 0 else 0
+ok(abs(modulus / 2e9 - 1) < 1e-3 and abs(strength / 1e6 - 1) < 0.01, "grains that are not joined to the body bear no force",
+   (said.stderr, modulus, strength))
 ok(calibrate(LATTICE, "2e9", "0.2", "1e6").returncode == 65, "a cubic lattice has no Poisson ratio but 0")
 
 # ---- grains that settled ------------------------------------------------------------------
