@@ -261,16 +261,17 @@ class Specimen:
         Where displacements are small, stiff bonds break under the same stresses, and keep them small."""
         stiff = scaled(bond, "stiffness", max(1, stretch(bond) / (1e-7 * self.r.mean())))
         coarse = self.rising(axis, stiff)
-        most = 0
+        most = under = 0
         for begin in range(0, len(coarse), 5):  # since a body in pieces is slow
             some = coarse[begin:begin + 5]
             carried = self.carried_under(axis, [0, *some], stiff, FAST)
-            most = max(most, carried.max())
+            if carried.max() > most:
+                most, under = carried.max(), [0, *some][carried.argmax()]
             if carried[-1] < 0.5 * some[-1]:
                 break
         else:
             refuse(3, f"{self.scene}: no stress along {'xyz'[axis]} up to {coarse[-1]:.3g} Pa parts the body")
-        near = most * np.concatenate([np.linspace(0, 0.8, 9), np.linspace(0.82, 1.14, steps)])
+        near = under * np.concatenate([np.linspace(0, 0.8, 9), np.linspace(0.82, 1.14, steps)])
         return self.carried_under(axis, near, stiff, FAST).max()
 
     def strength_in_time(self, axis, bond, guess):
