@@ -187,7 +187,7 @@ class Specimen:
         forces, response = (os.path.join(self.folder, name) for name in ("forces.h5", "response.h5"))
         self.write_forces(forces, axis, stresses)
         settings = (*(f"{key}={value!r}" for key, value in bond.items()), "support=free", "gravity=0", "snapshots=[0]",
-                    "shrinkage.strain=0", "bridges.volume=0", *how)
+                    "shrinkage.strain=0", "bridges.volume=0", "capillary.suction=0", *how)
         if self.bonds:  # as dem-replay found them, and drew their strengths
             settings += "bond.by=packing", "bond.strength.distribution=one"
         self.stage("dem-replay", *(word for setting in settings for word in ("-s", setting)), forces, "-o", response)

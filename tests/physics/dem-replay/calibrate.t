@@ -119,6 +119,11 @@ UNEQUAL = {"pack": {"method": "deposition", "count": 60, "radius": 12e-6, "seed"
 said = calibrate(UNEQUAL, "1e9", "none", "1e5", axes="x")
 ok(said.returncode == 0, "a residual force of a few 1e-8 is rest enough for moduli", said.stderr)
 
+# Layers that crack by suction, or by shrinkage, are tested without either.
+plain, drained = (calibrate({**SETTLED, "dem-replay": {**SETTLED["dem-replay"], **more}}, "1e9", "none", "1e5")
+                  for more in ({}, {"capillary": {"suction": 1e5, "control": "evaporation"}, "shrinkage": {"strain": 0.1}}))
+ok(drained.returncode == 0 and drained.stdout == plain.stdout, "suction and shrinkage of the scene change no test", drained.stderr)
+
 # ---- what cannot be -----------------------------------------------------------------------
 
 for what, scene, wanted, status, line in [
