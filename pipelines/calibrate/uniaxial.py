@@ -53,6 +53,8 @@ def effective(scene):
         found[key] = value
     if parameters["bond"]["kind"] != "parallel":
         refuse(65, f"{scene}: dem-replay.bond.kind: must be parallel")
+    if parameters["prestress"]:
+        refuse(65, f"{scene}: dem-replay.prestress: must be false: overlaps that push load the bonds before any test")
     return found
 
 

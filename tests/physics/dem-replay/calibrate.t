@@ -134,6 +134,8 @@ for what, scene, wanted, status, line in [
         ("bonds without strength", {**SETTLED, "dem-replay": {"bond": {"normal_strength": 0}}}, ("1e9", "none", "1e5"), 65,
          "must be above 0"),
         ("contact bonds", {**SETTLED, "dem-replay": {"bond": {"kind": "contact"}}}, ("1e9", "none", "1e5"), 65, "must be parallel"),
+        ("overlaps that push", {**SETTLED, "dem-replay": {**SETTLED["dem-replay"], "prestress": True}}, ("1e9", "none", "1e5"), 65,
+         "prestress: must be false"),
         ("a sphere", {**LATTICE, "pack": {"method": "cubic", "radius": R, "bonds": "touching",
                                           "domain": {"shape": "sphere", "radius": 8 * R}}}, ("1e9", "none", "1e5"), 65, "pack.domain"),
         ("a periodic box", {"pack": {**LATTICE["pack"], "periodic": [True, True, True]}}, ("1e9", "none", "1e5"), 65, "pack.periodic"),
