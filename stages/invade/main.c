@@ -141,7 +141,7 @@ static void put_summary(struct artifact *artifact, const struct network *network
         left += outcome->cluster_volume[c];
         if (outcome->cluster_trapped[c]) trapped += outcome->cluster_volume[c];
     }
-    const double saturation = outcome->n ? outcome->saturation[outcome->n - 1] : 1;
+    const double saturation = saturation_after(outcome, outcome->n);
     if (outcome->n && outcome->ring_saturation)
         in_rings = outcome->ring_saturation[outcome->n - 1];
     artifact_put_number(artifact, "/summary/inlet", conditions->inlet);
@@ -154,7 +154,7 @@ static void put_summary(struct artifact *artifact, const struct network *network
     if (n < 0) return;
     artifact_put_number(artifact, "/summary/breakthrough_event", n);
     artifact_put_number(artifact, "/summary/breakthrough_saturation",
-                        n ? outcome->saturation[n - 1] : 1);
+                        saturation_after(outcome, n));
     if (n == 0) return;
     double highest = outcome->pressure[0];
     for (int k = 1; k < n; k++)

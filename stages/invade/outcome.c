@@ -86,12 +86,18 @@ static void find_saturations(const struct network *network, struct outcome *outc
         }
     }
     const double total = outcome->volume = compensated_value(all);
+    outcome->at_first = fmax(0, compensated_difference(all, gone) / total);
     for (int k = 0; k < outcome->n; k++) {
         compensated_add(&gone, lost[k]);
         outcome->saturation[k] =
             k < last ? fmax(0, compensated_difference(all, gone) / total) : 0;
     }
     free(lost);
+}
+
+double saturation_after(const struct outcome *outcome, int event)
+{
+    return event > 0 ? outcome->saturation[event - 1] : outcome->at_first;
 }
 
 static void find_curve(struct outcome *outcome)

@@ -20,9 +20,11 @@ struct outcome {
     int32_t *node_event;   // (n_node)
 
     int n;
-    double volume;           // m3 of liquid at the start
+    double volume;           // m3 of a full network
     double *pressure;        // (n) Pa, at which gas enters
-    double *saturation;      // (n) after the event, of the liquid volume at the start
+    double at_first;         // saturation before the events: less than 1 where pores at
+                             // the inlet hold gas from the start
+    double *saturation;      // (n) after the event, of that volume
     double *ring_saturation; // (n) the part of it in rings; NULL: not looked at
 
     // Pressures higher than all before, and the saturation just before the next of
@@ -49,6 +51,9 @@ struct outcome outcome_init(const struct network *network,
 // Returns how many pieces there are.
 int events_of_pieces(const struct network *network, const struct outcome *outcome,
                      int throat, int32_t event[2]);
+
+// After EVENT events, 0 to n.
+double saturation_after(const struct outcome *outcome, int event);
 
 // Counts the VOLUME (n), m3, that stays in rings after each event.
 void outcome_add_rings(struct outcome *outcome, const double *volume);

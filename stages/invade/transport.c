@@ -240,13 +240,14 @@ static void fill_phase_network(struct phase_network *conductor,
     }
 }
 
-// The events after which the states are reached: full, 0.9, 0.8, ..., the end. Returns
+// The events after which the states are reached: none, 0.9, 0.8, ..., the end. Returns
 // their number.
 static int find_states(const struct outcome *outcome, int *event)
 {
     int n = 0, k = 0;
     event[n++] = 0;
     for (int tenths = 9; tenths > 0; tenths--) {
+        if (outcome->at_first <= tenths / 10.0) continue;
         while (k < outcome->n && outcome->saturation[k] > tenths / 10.0)
             k++;
         if (k == outcome->n) break;
@@ -370,7 +371,7 @@ enum status transport_find(const struct network *network,
     enum status status = check(&conductor, reason);
     if (!status) status = find_one_phase(&conductor, transport, reason);
     for (int k = 0; !status && k < transport->n; k++) {
-        transport->saturation[k] = event[k] ? outcome->saturation[event[k] - 1] : 1;
+        transport->saturation[k] = saturation_after(outcome, event[k]);
         status = find_relative(&conductor, outcome, k, event[k], transport, reason);
     }
     phase_network_free(&conductor);

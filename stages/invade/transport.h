@@ -9,7 +9,7 @@ enum property { PERMEABILITY, DIFFUSIVITY, PROPERTIES };
 enum phase { GAS, LIQUID_PHASE, PHASES };
 
 struct transport {
-    int n; // states: full; when the saturation first is 0.9, 0.8, ... 0.1 or less; last
+    int n; // states: first; when the saturation first is 0.9, 0.8, ... 0.1 or less; last
     double *saturation;                   // (n) falling
     double *relative[PHASES][PROPERTIES]; // (n) each, of what one phase alone has
 

@@ -184,6 +184,18 @@ with scratch_paths() as at:
     ok(all(np.array_equal(*pair) for pair in zip(*drawn)) and drawn[0][1].max() == 2,
        "drawn radii, and throats imposed empty, are those of dry")
 
+    # Where pores hold the liquid, those of the inlet hold gas before the first event.
+    for settings in ('outlet=["+x"]', "until=breakthrough"), ("transport=true",):
+        run("invade", *sets("liquid_in=pores", *settings), at("network.h5"), "-o", at("start.h5"))
+        with h5py.File(at("start.h5")) as file:
+            held = np.pi * file["throats/radius"][:] ** 2 * file["throats/length"][:]
+            dry = (file["nodes/kind"][:] & 32 > 0)[file["throats/nodes"][:]].mean(axis=1)
+            s, at_first = file["summary"].attrs, 1 - (dry * held).sum() / held.sum()
+            said = ([s["breakthrough_saturation"], s["residual_saturation"], file["clusters/volume"][:].sum() / held.sum()]
+                    if "transport" not in file else [file["transport/saturation"][0]])
+            ok(at_first < 0.99 and np.allclose(said, at_first, rtol=0, atol=1e-13),
+               f"{settings[0]}: the saturation begins without the pores of the inlet", (said, at_first))
+
     # Throats imposed empty hold no liquid, whatever holds it in the others.
     for liquid_in in "throats", "pores":
         run("invade", *sets(f"liquid_in={liquid_in}", 'imposed_empty=["-x"]'), at("network.h5"), "-o", at("imposed.h5"))
