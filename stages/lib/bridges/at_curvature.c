@@ -188,6 +188,17 @@ static bool is_beyond_all(double curvature, double gap, double most)
            curvature * gap > exp(-2.4 * sqrt(fmax(gap, 0)));
 }
 
+// Whether overlapping bodies meet at too wide a wedge for liquid under suction: at an
+// angle, through the bodies, of at most both contact angles together. With R1, R2 and
+// the distance D of the centres its cosine is (R1^2 + R2^2 - D^2) / (2 R1 R2).
+static bool is_wide_wedge(const struct bodies *bodies, double gap)
+{
+    const double a = bodies->curvature[0], b = bodies->curvature[1], depth = -gap;
+    const double wedge = -1 + depth * (a + b) - depth * depth * a * b / 2;
+    return depth > 0 &&
+           cos(bodies->contact_angle[0] + bodies->contact_angle[1]) <= wedge;
+}
+
 enum status find_at_curvature(const struct bodies *bodies, double curvature, double gap,
                               struct equilibrium *found, double *volume)
 {
@@ -195,6 +206,7 @@ enum status find_at_curvature(const struct bodies *bodies, double curvature, dou
     struct unknowns unknowns;
     enum status status = STATUS_OK;
     *found = (struct equilibrium){.gap = gap};
+    if (is_wide_wedge(bodies, gap)) return STATUS_NO;
     double most;
     if (!jump(&search, curvature, &most, &unknowns, &found->steps)) {
         if (is_beyond_all(curvature, gap, most)) return STATUS_NO;

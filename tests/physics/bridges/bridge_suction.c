@@ -58,6 +58,30 @@ TEST(volume)
     assert_in_range(found, asked / 3, asked);
 }
 
+// Where spheres overlap, the sides of a bridge are hollow only if both contact angles
+// are less than the angle at which the spheres meet: just beyond it there is none.
+TEST(wedge)
+{
+    static const double ratio[] = {1, 0.3, 0.05};
+    for (int r = 0; r < 3; r++)
+        for (double depth = 0.1; depth < 2; depth += 0.2) {
+            const double small = ratio[r], apart = 1 + small - depth * small;
+            const double wedge =
+                acos((1 + small * small - apart * apart) / (2 * small)) / DEGREE;
+            for (double angle = wedge / 2 + 0.01; angle < 90; angle += 10) {
+                const struct bridge bridge = bodies(small, angle, angle);
+                struct bridge_state is;
+                struct reason reason;
+                double volume;
+                const enum status status = bridge_at_suction(
+                    &bridge, -1e-6 * depth * small, 1e5, &is, &volume, &reason);
+                if (status != STATUS_NO)
+                    fail_msg("radii 1:%g, depth %g, %g degrees: %d", small, depth,
+                             angle, status);
+            }
+        }
+}
+
 // The largest suction of bridges of any volume, to 1e-4, by those of 4000 volumes.
 static double largest_suction(struct bridge bridge, double separation)
 {
