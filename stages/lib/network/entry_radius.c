@@ -63,11 +63,10 @@ static struct liquid_gap fill_gap(const double r[2], double d, double R, double 
         gap.area -= r[i] * l[i] * sin(delta[i]) / 2 + gap.wetted[i] * r[i] * r[i] / 2;
     }
     gap.meniscus = R * psi;
-    // Discs that overlap hold none. The area may be below 0: the meniscus reaches
-    // through the gap into the next polygon.
-    if (!(psi > 0 && gap.wetted[0] > 0 && gap.wetted[1] > 0))
-        return (struct liquid_gap){0};
-    return gap;
+    // Discs that overlap by much hold none. Areas, and with a contact angle what is
+    // wetted, may be below 0: the meniscus reaches through the gap into the next
+    // polygon, until its centre is on the line between the discs.
+    return psi > 0 ? gap : (struct liquid_gap){0};
 }
 
 // Radius of grain NUMBER in the section's narrowest plane; 0 beyond its end.

@@ -64,6 +64,21 @@ TEST(far_discs)
     assert_close(entry_radius(&section, 0), 1 - 2 * 0.05, 1e-9);
 }
 
+// With a contact angle too: the meniscus goes on past the line between the discs, its
+// centre comes to that line, l = 1/2 from both.
+TEST(far_discs_at_an_angle)
+{
+    struct section_grain grain[MOST];
+    struct section_gap gap[MOST];
+    const double r = 0.05;
+    const struct open_section section = regular(4, r, 1, grain, gap);
+    for (int degrees = 20; degrees <= 80; degrees += 20) {
+        const double angle = degrees * M_PI / 180, half = r * cos(angle);
+        const double R = sqrt(half * half + 0.25 - r * r) - half;
+        assert_close(entry_radius(&section, angle), 2 * cos(angle) * R, 1e-9);
+    }
+}
+
 // Half a square, cut along a mirror, is as the square.
 TEST(mirrors)
 {
