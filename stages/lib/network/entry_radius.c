@@ -12,7 +12,8 @@
 // liquid wets phi_i - delta_i of disc i, the meniscus is R psi long,
 //     psi = pi - phi_i - phi_j - eps_i - eps_j,
 // and the liquid's area is that of the triangle c_i C c_j without the triangles to the
-// contacts, the meniscus' sector and the wetted sectors. A gap wider than the meniscus
+// contacts, the meniscus' sector and the wetted sectors, which share half a lens where
+// discs overlap. A gap wider than the meniscus
 // (l_i + l_j < d) holds no liquid.
 //
 // The gas area changes with R as R times what the right side does, so the fixed point
@@ -42,6 +43,21 @@ static double limited_acos(double x)
     return acos(fmin(1, fmax(-1, x)));
 }
 
+// Angles of two discs, a distance D apart, that lie in each other, from the line
+// between them: into HIDDEN. Returns the half of their lens on that side, which both
+// sectors count.
+static double hide_overlap(const double r[2], double d, double hidden[2])
+{
+    double lens = 0;
+    for (int i = 0; i < 2; i++) {
+        const double x = (d + (r[i] - r[!i]) * ((r[i] + r[!i]) / d)) / 2;
+        const double half = sqrt(fmax(0, r[i] * r[i] - x * x));
+        hidden[i] = atan2(half, x);
+        lens += (r[i] * r[i] * hidden[i] - x * half) / 2;
+    }
+    return lens;
+}
+
 static struct liquid_gap fill_gap(const double r[2], double d, double R, double cosine,
                                   double sine)
 {
@@ -63,10 +79,12 @@ static struct liquid_gap fill_gap(const double r[2], double d, double R, double 
         gap.area -= r[i] * l[i] * sin(delta[i]) / 2 + gap.wetted[i] * r[i] * r[i] / 2;
     }
     gap.meniscus = R * psi;
-    // Discs that overlap by much hold none. Areas, and with a contact angle what is
-    // wetted, may be below 0: the meniscus reaches through the gap into the next
-    // polygon, until its centre is on the line between the discs.
-    return psi > 0 ? gap : (struct liquid_gap){0};
+    // No liquid is in too wide a wedge between discs that overlap. Areas, and with a
+    // contact angle what is wetted, may be below 0: the meniscus reaches through the
+    // gap into the next polygon, until its centre is on the line between the discs.
+    struct liquid_gap dry = {0};
+    if (r[0] + r[1] > d) gap.area += hide_overlap(r, d, dry.wetted);
+    return psi > 0 ? gap : dry;
 }
 
 // Radius of grain NUMBER in the section's narrowest plane; 0 beyond its end.

@@ -54,6 +54,46 @@ TEST(touching_rods)
     }
 }
 
+// Gas area less R (menisci + cos(theta) rim) between three rods of radius 1, their
+// centres APART, also less than 2: the hexagon of the six contacts, less three segments
+// of rods, with three of menisci.
+static double excess_of_three(double apart, double angle, double R)
+{
+    const double l = sqrt(1 + R * R + 2 * R * cos(angle)), half = apart / 2;
+    const double from_line =
+        acos(half / l) - atan2(R * sin(angle), 1 + R * cos(angle)); // of the contact
+    const double rim = M_PI / 3 - 2 * from_line;
+    const double wide = apart - 2 * cos(from_line); // between the contacts
+    const double turned = 2 * asin(wide / (2 * R));
+    const double inner = 2 * sin(rim / 2); // the other sides of the hexagon
+    const double side = wide + 2 * inner;  // of the triangle that they cut off
+    const double hexagon = sqrt(3) / 4 * (side * side - 3 * inner * inner);
+    return hexagon - 1.5 * (rim - sin(rim)) + 1.5 * R * R * (turned - sin(turned)) -
+           3 * R * (R * turned + cos(angle) * rim);
+}
+
+TEST(overlapping_rods)
+{
+    for (double apart = 1.8; apart < 2.05; apart += 0.05)
+        for (int degrees = 0; degrees < 30; degrees += 12) {
+            const double angle = degrees * M_PI / 180;
+            double low = 1e-2, high = 0.3;
+            for (int k = 0; k < 100; k++) {
+                const double R = (low + high) / 2;
+                *(excess_of_three(apart, angle, R) > 0 ? &low : &high) = R;
+            }
+            struct section_grain grain[MOST];
+            struct section_gap gap[MOST];
+            struct section_overlap overlap[MOST];
+            struct open_section section = regular(3, 1, apart, grain, gap);
+            for (int i = 0; i < 3 && apart < 2; i++)
+                overlap[section.n_overlap++] =
+                    (struct section_overlap){{apart / 2, apart / 2}, {1, 1}, 0};
+            section.overlap = overlap;
+            assert_close(entry_radius(&section, angle), 2 * cos(angle) * low, 1e-9);
+        }
+}
+
 // Discs far apart: gas enters when the menisci between two of them meet, half a circle
 // across the gap.
 TEST(far_discs)
