@@ -10,7 +10,7 @@
 // (give_void_volumes).
 //
 // The choices of throat_radius are enum clearance, and `entry` behind them, which is no
-// clearance: those of `segment` are found first, and entry radii only widen them. A
+// clearance: those of `segment` are found first, and bound entry radii from below. A
 // layer of grains (dimensions=2) gives a network in its plane, whose throats are
 // cylinders of their clearance in any case: conductance is not looked at there, and
 // entry acts as segment. contact_angle is in degrees here, in rad from here on.

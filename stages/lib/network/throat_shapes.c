@@ -9,14 +9,16 @@
 // (as_cylinder); one without a radius too conducts nothing: all three numbers are 0.
 //
 // Entry radii replace throat_radius, which as_cylinder reads: who wants both asks for
-// the shapes first, as tessellate does. They only widen a throat: the disc of its
-// clearance is free of grains in any case, and the iteration says 0 where it fails.
+// the shapes first, as tessellate does. The disc of a throat's clearance c is free of
+// grains in any case, so gas enters at 2 sigma / c at most: at a radius of at least
+// c cos(theta), which stays where the iteration fails and says 0.
 #include "network/throat_shapes.h"
 
 #include "basics/memory.h"
 #include "network/entry_radius.h"
 #include "network/throat_polygon.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 // What a throat conducts that the signed polygon closes though it has a radius: small
@@ -78,7 +80,7 @@ enum status find_entry_radii(struct network *network, double contact_angle,
             if (!(network->throat_radius[t] > 0)) continue; // closed stays closed
             throat_polygon_fill(&polygon, network, &sides, t);
             network->throat_radius[t] =
-                fmax(network->throat_radius[t],
+                fmax(network->throat_radius[t] * cos(contact_angle),
                      entry_radius(&polygon.section, contact_angle));
         }
         throat_polygon_free(&polygon);

@@ -16,6 +16,7 @@ enum status find_throat_shapes(struct network *network, struct reason *reason);
 
 // Gives every open throat, in place of its radius, that for which 2 sigma cos(theta) /
 // radius is the pressure at which gas enters it (network/entry_radius.h), with
-// CONTACT_ANGLE theta in rad; no less than the radius it has. Faces as above.
+// CONTACT_ANGLE theta in rad; no less than cos(theta) times the radius it has. Faces as
+// above.
 enum status find_entry_radii(struct network *network, double contact_angle,
                              struct reason *reason);

@@ -95,7 +95,7 @@ def lattice(radius, other=None):
 
 
 for radius, angle, what in ((R, 0, "touch"), (1.02 * R, 20, "overlap"), (0.98 * R, 0, "are apart"),
-                            (R, 60, "touch, at 60 degrees"), (R, 85, "touch, at 85 degrees")):
+                            (R, 60, "touch, at 60 degrees"), (R, 70, "touch, at 70 degrees")):
     packing = lattice(radius)
     said = invade(network("network", packing, angle), "rings=isolated", "trapping=false", angle=angle)
     exact = rings(packing, [said["events/pressure"].min() * (1 - 1e-12)], angle)

@@ -57,6 +57,14 @@ with scratch_paths() as at:
     # Fluxes through Voronoi faces are exact for linear fields: points between walls conduct as
     # the empty box, along all axes, throats in walls and edges included.
     points = np.c_[random.random((200, 3)) * [1, 1.3, .8], np.full(200, 1e-6)]
+    # Gas that enters between points sees no contact angle: 2 sigma cos(angle) / radius stays.
+    entry = []
+    for angle in 0, 60:
+        with h5py.File(tessellated(at("points"), points, (1, 1.3, .8), "throat_radius=entry", f"contact_angle={angle}")) as file:
+            entry.append(file["throats/radius"][:])
+    off = abs(entry[1] / entry[0] * 2 - 1).max()
+    ok(off < 1e-4, "points let gas in at one pressure at any contact angle", off)
+
     empty = tessellated(at("empty"), points, (1, 1.3, .8))
     for axis in "xyz":
         diffusivity, _ = material(at("m.h5"), empty, axis)
