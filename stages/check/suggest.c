@@ -125,7 +125,8 @@ json_t *expected_cost(int n)
     add_cost(list, "tessellate", cost_of_tessellation(n));
     add_cost(list, "merge-nodes", cost_of_merging(&body));
     add_cost(list, "dry",
-             cost_of_drying(&body, false, true, default_vapour_step(body.face)));
+             cost_of_drying(&body, false, true,
+                            default_vapour_step(body.face, body.throats)));
     add_cost(list, "force-protocol (100 loads)", cost_of_forces(&body));
     add_cost(list, "dem-replay (100 loads of 100 cycles)",
              cost_of_cycles(&body, 0, 100, 100));

@@ -157,9 +157,10 @@ const struct parameter dry_table[] = {
      .text =
          "largest sum of the errors of evaporation, over the rate, until the vapour "
          "is found again in all of the gas (until then it changes only near nodes "
-         "that dry); 0: found at each event; null: 0 up to 3000 nodes on the open "
-         "walls, 0.3 above, 0.15 with rings=films, but 0 with kelvin, flow_step=0 in "
-         "viscous liquid, or a vapour_tolerance"},
+         "that dry); 0: found at each event; null: 0.3, 0.15 with rings=films, "
+         "above 2000 nodes on the open walls if this takes less than half of the time; "
+         "else 0, as with kelvin, flow_step=0 in viscous liquid, or a "
+         "vapour_tolerance"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),
      .text = "fall of the saturation from one recorded step to the next; 0: every "
@@ -253,7 +254,7 @@ double vapour_step(const struct dry_parameters *parameters, double open_nodes,
     const bool at_each =
         conditions->kelvin || conditions->vapour_tolerance > 0 ||
         (parameters->liquid == LIQUID_VISCOUS && flow_step(parameters, throats) == 0);
-    const double step = at_each ? 0 : default_vapour_step(open_nodes);
+    const double step = at_each ? 0 : default_vapour_step(open_nodes, throats);
     return parameters->rings == RINGS_FILMS ? step / 2 : step;
 }
 

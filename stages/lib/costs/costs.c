@@ -40,8 +40,9 @@ static const double SMALL_BYTES = 22000, GRAIN_BYTES = 54, THROAT_BYTES = 107;
 // Events are recorded one by one up to so many throats, above in a thousand steps.
 static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
 
-// The vapour is found at each event up to so many nodes on the open walls.
-static const double MOST_OPEN_NODES_BY_EVENTS = 3000, KEPT_STEP = 0.3;
+// The vapour is kept for a while where this takes half of the time, from so many nodes
+// on the open walls on.
+static const double LEAST_OPEN_NODES_TO_KEEP = 2000, KEPT_STEP = 0.3, HALF = 0.5;
 
 static struct cost cost_of(double seconds, double mebibytes)
 {
@@ -118,21 +119,34 @@ struct cost cost_of_merging(const struct body_size *body)
                   THROAT_BYTES * body->throats);
 }
 
-double default_vapour_step(double open_nodes)
+// Of a throat. Links of a front grow with its square.
+static double seconds_by_events(double face, bool exact)
 {
-    return open_nodes > MOST_OPEN_NODES_BY_EVENTS ? KEPT_STEP : 0;
+    const double front = 2 * face;
+    return 2e-6 + 9e-9 * front + front * front * (exact ? 5e-12 : 2.5e-12);
 }
 
-// Links of a front grow with its square. Kept vapour is found again as often as nodes
-// dry over those that dry in between, STEP of the open face.
+// Kept vapour is found again, in all of the gas, as often as nodes dry over those that
+// dry in between, STEP of the open face.
+static double seconds_by_steps(double face, double throats, double step)
+{
+    return 2e-6 + 2.5e-9 * face + 5.2e-8 * throats / (face * step);
+}
+
+double default_vapour_step(double open_nodes, double throats)
+{
+    const bool pays = seconds_by_steps(open_nodes, throats, KEPT_STEP) <
+                      HALF * seconds_by_events(open_nodes, true);
+    return pays && open_nodes > LEAST_OPEN_NODES_TO_KEEP ? KEPT_STEP : 0;
+}
+
 struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact,
                            double step)
 {
-    const double throats = body->throats, face = body->face, front = 2 * face;
-    const double links = step > 0 ? 0 : front * front;
-    const double each = step > 0
-                            ? 2e-6 + 2.5e-9 * face + 5.2e-8 * throats / (face * step)
-                            : 2e-6 + 9e-9 * front + links * (exact ? 5e-12 : 2.5e-12);
+    const double throats = body->throats, face = body->face;
+    const double links = step > 0 ? 0 : 4 * face * face;
+    const double each = step > 0 ? seconds_by_steps(face, throats, step)
+                                 : seconds_by_events(face, exact);
     double seconds = throats * each + 1.2e-7 * body->changes;
     if (kelvin) seconds += 2.4e-10 * pow(throats, 2.65);
     const double mebibytes =

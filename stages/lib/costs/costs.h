@@ -56,9 +56,10 @@ struct cost cost_of_merging(const struct body_size *body);
 struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact,
                            double step);
 
-// dry.vapour_step by default with so many nodes on the open walls, without films. From
-// some 1500 on dryings are faster with it; below 3000 they stay exact.
-double default_vapour_step(double open_nodes);
+// dry.vapour_step by default with so many nodes on the open walls, without films: above
+// 0 where it takes half of the time that the vapour at each event takes, and there are
+// 2000 such nodes. In deep bodies it takes longer, as all of the gas is found again.
+double default_vapour_step(double open_nodes, double throats);
 
 // What the flow of viscous liquid adds, found at each event, or KEPT for a while.
 struct cost with_viscous_flow(struct cost drying, const struct body_size *body,
