@@ -31,7 +31,8 @@ def write(name, content):
 
 def study(what, name, *words, status=0, **environment):
     """What the study of file NAME says; artifacts made, by kind."""
-    ended = subprocess.run([STUDY, what, at(name), "--runs=runs", "-j2", *words], text=True, capture_output=True,
+    jobs = [] if "MAKEFLAGS" in environment else ["-j2"]
+    ended = subprocess.run([STUDY, what, at(name), "--runs=runs", *jobs, *words], text=True, capture_output=True,
                            cwd=folder.name, timeout=600, env={**os.environ, "MAKEFLAGS": "", "BIN": BIN, **environment})
     made = [line.split()[1].split("/")[0] for line in ended.stdout.splitlines() if line.startswith("  RUN")]
     counts = {kind: made.count(kind) for kind in dict.fromkeys(made)}
@@ -403,6 +404,20 @@ refused("seeds of grains that come from a file", 65, "the scene draws nothing", 
         {"scene": "fallen.json", "import": "grains.txt", "seeds": 2})
 refused("what is not JSON", 65, "is not JSON", "wrong.json", "{")
 ok(study("make", "nowhere.json", status=66)[0], "refused: a file that is not there")
+
+# ---- make -j1 says how many stages run at once, also where it has no jobserver ------------------------
+
+write("alone", f"""#!/bin/sh
+mkdir {at('busy')} || exit 70
+sleep 0.3
+{BIN}/dry "$@"
+status=$?
+rmdir {at('busy')}
+exit $status
+""")
+os.chmod(at("alone"), 0o755)
+fine, counts, said, why = study("make", "small.json", "--name=alone", MAKEFLAGS=" -j1 -- J=-j4", DRY=at("alone"))
+ok(fine and counts["drying"] == 4, "one stage at once under make -j1", why)
 
 # ---- a disk that is full half-way ---------------------------------------------------------------------
 
