@@ -186,10 +186,13 @@ def markdown(summary, study):
 
 
 def tests_table(summary, study):
-    yield "| beside | measure | difference | t test, p | ranks, p |"
+    if not any(found for test in summary["tests"] for found in test["measures"].values()):
+        yield "Not compared: a test takes two runs or more at both points (seeds, packings)."
+        return
+    yield "| compared | measure | difference, first less second | t test, p | ranks, p |"
     yield "|---|---|---|---|---|"
     for test in summary["tests"]:
-        title = " beside ".join(point_title(study.points[k - 1], study.axes) for k in (test["point"], test["with"]))
+        title = " against ".join(point_title(study.points[k - 1], study.axes) for k in (test["point"], test["with"]))
         for name, found in test["measures"].items():
             if found and found["difference"] is not None:
                 spread = f" ± {three(found['sd'])}" if found.get("sd") is not None else ""

@@ -73,7 +73,7 @@ write("small.json", small)
 fine, counts, said, _ = study("make", "small.json")
 ok(fine and counts == {"packing": 1, "tessellation": 1, "network": 1, "drying": 4, "forces": 4, "response": 8, "crackstats": 8},
    "8 runs share packing, network, dryings and forces", counts)
-ok("8 runs, 4 points of 2; 27 of 27 artifacts to make" in said
+ok("8 runs at 4 points; 27 of 27 artifacts to make" in said
    and re.search(r"of one core, as stages foresee it; [\d.]+ [kM]B of disk \(", said),
    "their number, time and disk are said before", said)
 ok("\nMean ± standard deviation (95 % interval of the mean).\n" in said, "and what the numbers of the table are", said)
@@ -85,8 +85,12 @@ ok(under > 0 and f"\nIn {sum(m['unsettled']['cracks'] > 0 for m in counted)} of 
 write("small.json", {**small, "confidence": 0.8})
 said = study("table", "small.json")[2] + open(at("runs", "small", "summary.md"), encoding="utf-8").read()
 ok(said.count("(80 % interval of the mean)") == 2 and "95 %" not in said, "also with another confidence", said)
+write("small.json", {**small, "seeds": 1})
+said = study("table", "small.json")[2]
+ok("Not compared: a test takes two runs or more" in said and "t test" not in said, "why runs by themselves are not compared", said)
 write("small.json", small)
-study("table", "small.json")
+said = study("table", "small.json")[2]
+ok("| immobile, 2000 against inviscid, 2000 | cracks.total |" in said and "Not compared" not in said, "and what is compared with what", said)
 with open(at("runs/small/runs.json"), encoding="utf-8") as lines:
     responses = [r["artifacts"]["response"] for r in json.load(lines)["runs"]]
 notes = at("runs/small/.study/notes")
@@ -238,7 +242,7 @@ spelled = table("table")
 ok(fine and [r["cracks.total"] for r in spelled] == first and spelled[0]["label"] == "inviscid-2000-1",
    "a table of runs is the same study", spelled[:1])
 write("seeds.tsv", "dem-replay.friction\tdry.throat_radius.seed\n0.5\t1\n0.5\t2\n0.4\t1\n")
-ok("3 runs, 2 points of 1.5" in study("plan", "seeds.tsv", "--scene=scene.json")[2], "rows that differ in seeds alone are a point")
+ok("3 runs at 2 points" in study("plan", "seeds.tsv", "--scene=scene.json")[2], "rows that differ in seeds alone are a point")
 write("lean.json", {**small, "seeds": 1, "keep": []})
 fine, counts, *_ = study("make", "lean.json")
 kept = sorted(os.listdir(at("runs/lean")))
