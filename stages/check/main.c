@@ -93,7 +93,8 @@ static void judge_defaults(const struct packing_facts *facts, struct findings *f
     add_finding(
         findings, FINDING_NOTE, "defaults",
         "dem-replay's defaults are for radii of 250 nm, these are %.3g times as large: "
-        "say stiffnesses and strengths (suggested where nothing is wrong)",
+        "say stiffnesses and strengths (suggested where no more than overlaps is "
+        "wrong)",
         ratio);
 }
 

@@ -225,7 +225,8 @@ static enum status check_fall(const struct making *making, const struct domain *
         height, cycles, dem_time_step(dem), (long long)making->how->most_cycles);
 }
 
-// Given grains fall from where they are.
+// Given grains fall from where they are. Diameters for radii make grains that touch fit
+// at half their size.
 static enum status take_cloud(const struct making *making, struct domain *tall,
                               struct reason *reason)
 {
@@ -237,8 +238,11 @@ static enum status take_cloud(const struct making *making, struct domain *tall,
         reason, STATUS_BAD_DATA,
         "%s: grains overlap each other or the walls so much that they would fly "
         "apart instead of falling: without overlaps they would be %.3g of their size "
-        "(separate them first by pack.method=explosive_repulsion)",
-        making->given, fits);
+        "(%sseparate them first by pack.method=explosive_repulsion)",
+        making->given, fits,
+        fits < 0.6 ? "diameters for radii? pack.import.diameters=true halves them; "
+                     "otherwise "
+                   : "");
 }
 
 enum status deposit(const struct making *making, int count, struct reason *reason)

@@ -28,7 +28,7 @@ imported("letters among the grains are refused", "0 0 0 1\n0 0 zero 1\n",
 for heading in "x,y,z,d", "x,y,z,x,r", "x_um,y_um,z_um,r_um":
     imported(f"names of columns that are not those of grains: {heading}", f"{heading}\n0,0,0,1,1\n",
              "line 1: must be four numbers, x y z r, or a comment, #; names of columns must have x, y, z and r "
-             r"\(or radius\) among them, each once \(diameters: r, with import.diameters=true\)")
+             r"\(or radius\) among them, each once \(call diameters r, and give import.diameters=true\)")
 imported("an empty field in a named column is refused", "x,y,z,r\n0,0,,1\n",
          "line 2: must have a number in column z$")
 imported("a line shorter than its heading is refused", "label x y z r\n1 0 0 0\n",
@@ -79,13 +79,18 @@ imported("grains with more volume than their box are refused", "1 1 1 0.005\n1 1
 for method, line in [
         ("deposition", "grains: grains overlap each other or the walls so much that they "
                        r"would fly apart .*: without overlaps they would be 0.5 of their size "
-                       r"\(separate them first by pack.method=explosive_repulsion\)"),
+                       r"\(diameters for radii\? pack.import.diameters=true halves them; "
+                       r"otherwise separate them first by pack.method=explosive_repulsion\)"),
         ("radius_expansion target=pressure target_value=1",
          r"pack.target: must not be pressure for radius_expansion of grains, .*"),
         ("domain_contraction", r"pack.method: domain_contraction closes in a box that repeats .*")]:
     refused(f"own grains by {method}: refused", BAD_DATA,
             ["pack", *sets(*f"method={method}".split()), text_file("grains", "0 0 0 1e-3\n0 0 1e-3 1e-3\n0 0 4e-3 1e-3\n")],
             line)
+
+refused("grains that overlap less are not taken for diameters", BAD_DATA,
+        ["pack", *sets("method=deposition"), text_file("grains", "0 0 0 1e-3\n0 0 1.6e-3 1e-3\n0 0 4e-3 1e-3\n")],
+        r"grains: .*: without overlaps they would be 0.8 of their size \(separate them first by .*\)")
 
 # ---- imported dumps ---------------------------------------------------------------------
 

@@ -61,7 +61,7 @@ static enum status check_count(const char *line, int count, int number, bool fir
                       "line %d: must be four numbers, x y z r, or a comment, #%s",
                       number,
                       first ? "; names of columns must have x, y, z and r (or radius) "
-                              "among them, each once (diameters: r, with "
+                              "among them, each once (call diameters r, and give "
                               "import.diameters=true)"
                             : "");
     if (count != 4)

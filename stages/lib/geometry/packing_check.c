@@ -60,8 +60,9 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
     int k = 1;
     if (facts->unit > 0) {
         add_finding(findings, FINDING_WRONG, "units",
-                    "by its heading (of a dump ITEM: UNITS) the file has lengths in "
-                    "units of %g m, which were taken for metres: pack.import.scale=%g",
+                    "the file says (in its heading, a dump by ITEM: UNITS) that its "
+                    "lengths are in units of %g m; they were taken for metres: "
+                    "pack.import.scale=%g",
                     facts->unit, facts->unit);
         return;
     }
@@ -86,7 +87,8 @@ static void judge_units(const struct packing_facts *facts, struct findings *find
         add_finding(findings, FINDING_WRONG, "units",
                     "the median radius is %g m, less than molecules of liquid have: "
                     "are lengths "
-                    "in metres? pack.import.scale is metres per unit of the file",
+                    "in metres? pack.import.scale is metres per unit of the file (1 "
+                    "for packing.h5)",
                     facts->median);
     if (facts->radius_unit > 1)
         add_finding(findings, FINDING_WRONG, "radii",
