@@ -38,8 +38,8 @@ static const char *const column_name[] = {"bonds",
                                           "in tension",
                                           "in shear",
                                           "broken, %",
-                                          "saturation at the first",
-                                          "saturation at half of them",
+                                          "saturation at the first break",
+                                          "saturation at half the breaks",
                                           "saturation at half the rate",
                                           "dried after, s",
                                           "pieces",
@@ -359,7 +359,9 @@ static void say_broken(FILE *page, const struct study *study, int group)
     const double half = half_width(broken, confidence);
     const double mean = broken.n ? sample_mean(broken) : NAN;
     char text[2][40];
-    if (broken.n) put_line(page, "%s bonds broke on average", plain(mean, 4, text[0]));
+    if (broken.n)
+        put_line(page, "%s bond%s broke%s", plain(mean, 4, text[0]),
+                 mean == 1 ? "" : "s", broken.n > 1 ? " on average" : "");
     if (isfinite(half))
         put_line(page, " (95 %% interval %s to %s)",
                  plain(fmax(0, mean - half), 4, text[0]),
@@ -551,11 +553,15 @@ static void put_caption(FILE *page, const struct study *study, int column)
         put_line(page, "%s%s: ", group ? "; " : "", group_of(study, group));
         const double mean = sample.n ? sample_mean(sample) : NAN;
         char text[2][40];
-        if (sample.n) put_line(page, "mean %s", plain(mean, 4, text[0]));
+        if (sample.n)
+            put_line(page, sample.n > 1 ? "mean %s" : "%s", plain(mean, 4, text[0]));
         if (isfinite(half))
             put_line(page, " (%s to %s)", plain(mean - half, 4, text[0]),
                      plain(mean + half, 4, text[1]));
-        put_line(page, sample.n ? ", %d runs" : "no run says it", sample.n);
+        if (sample.n)
+            put_line(page, ", %d run%s", sample.n, sample.n > 1 ? "s" : "");
+        else
+            put_line(page, "no run says it");
         free((void *)sample.value);
     }
     fputs("</p>\n", page);

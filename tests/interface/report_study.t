@@ -89,7 +89,7 @@ for path in paths:
 counts = np.array(counts)
 ok([int(v) for v in column("broken")] == counts[:, 0].tolist() and [int(v) for v in column("in tension")] == counts[:, 1].tolist(),
    "cracks by mode are those of the artifacts", (column("broken"), counts.tolist()))
-ok(np.allclose([float(v) for v in column("saturation at the first") if v], [v for v in first if not np.isnan(v)], rtol=1e-4), "and where the first opened")
+ok(np.allclose([float(v) for v in column("saturation at the first break") if v], [v for v in first if not np.isnan(v)], rtol=1e-4), "and where the first opened")
 links = [os.path.join(at("study"), re.sub(r"%(..)", lambda m: chr(int(m[1], 16)), link)) for link in table.links]
 ok([os.path.realpath(link) for link in links] == [os.path.realpath(f"{path}/report.html") for path in paths[1:]],
    "names lead to the pages that are there", table.links)
@@ -142,6 +142,8 @@ ok(svgs and all(sorted(p[2].split(", ")) == sorted(q[2].split(", ")) and p[:2] =
    "long names of groups are whole", placed)
 four = html.unescape(open(at("four.html")).read())
 headline = re.search(r'id="headline">(.*?)</p>', four, re.S)[1]
+ok("on average" not in headline and re.search(r": [\d.]+, 1 run[;<]", four) and "1 runs" not in four and "mean 1" not in four,
+   "of a group of one run no mean", headline)
 ok("4 runs in 4 groups: normal_strength 20000: " in headline and headline.count("bonds broke") == 3 and headline.endswith("; and so on below."),
    "a headline says that it leaves groups out, and whole numbers without a point", headline)
 os.makedirs(at("study/empty"))
