@@ -157,7 +157,9 @@ json_t *dataset_json(const struct artifact *artifact, const char *name)
     snprintf(absolute, sizeof absolute, "%s%s", *name == '/' ? "" : "/", name);
     const json_t *entry = schema_dataset(artifact->schema, absolute);
     if (!entry)
-        die(STATUS_BAD_DATA, "%s: has no dataset %s (a %s has none)",
+        die(STATUS_BAD_DATA,
+            "%s: has no dataset %s (a %s has none; without --data inspect lists those "
+            "it has)",
             input_name(artifact->path), name, artifact->schema->name);
     if (!has_entry(artifact->file, entry))
         die(STATUS_BAD_DATA, "%s: has no dataset %s: it was left out",

@@ -412,7 +412,9 @@ void write_series(const struct artifact *artifact, const char *prefix, int n_fra
             input_name(artifact->path), schema);
     else
         die(STATUS_BAD_DATA,
-            "%s: nothing changes over time in a%s %s; ParaView opens it as it is",
+            "%s: nothing changes over time in a%s %s; ParaView opens it as it is, "
+            "under a "
+            "name that ends in .hdf",
             input_name(artifact->path), strcmp(schema, "invasion") ? "" : "n", schema);
     end_frames(&frames);
 }

@@ -42,7 +42,7 @@ refused("inspect refuses --frames 0", USAGE, ["inspect", "--frames=0", "packing"
         "--frames: must be from 1 to 10000, got 0", output=())
 refused("inspect names a dataset that is not there", BAD_DATA,
         ["inspect", "--data=/force", "packing"],
-        r"packing: has no dataset /force \(a packing has none\)", output=())
+        r"packing: has no dataset /force \(a packing has none; without --data inspect lists those it has\)", output=())
 refused("inspect has no series of what does not change", BAD_DATA,
         ["inspect", "--vtk=out/x", "packing"],
         "packing: nothing changes over time in a packing; .*", output=())

@@ -24,7 +24,7 @@ for program in ["tessellate", "dry", "crackstats", "inspect", "artdiff packing"]
     refused_in_shell(f"text without end is refused by {program}", BAD_DATA,
                      "while echo yes or no; do sleep 0.01; done |"
                      f" timeout 5 $BIN/{program} -",
-                     f"{program.split()[0]}: standard input: is not an HDF5 file")
+                     f"{program.split()[0]}: standard input: is not an HDF5 file; grains as text go to pack first")
 refused("a signature alone is not an artifact", BAD_DATA,
         ["tessellate", text_file("signature", b"\x89HDF\r\n\x1a\n")],
         "signature: is a truncated or damaged HDF5 file")
@@ -81,6 +81,8 @@ for reader, given, first in [
             + f": first run {first}" * bool(first))
 refused("a dump is not an HDF5 file", BAD_DATA, ["tessellate", text_file("dump", "ITEM: TIMESTEP\n0\n")],
         "dump: is not an HDF5 file; grains as text go to pack first")
+refused("nor a table with names of columns", BAD_DATA, ["tessellate", text_file("table", "Part,X,Y,Z,R\n1,0,0,0,1\n")],
+        "table: is not an HDF5 file; grains as text go to pack first")
 refused("a JSON artifact is not an HDF5 file", BAD_DATA, ["crackstats", "crackstats"],
         "crackstats: is not an HDF5 file; parameters, in JSON, go by -p")
 damage("an unknown schema is named", "packing",

@@ -18,6 +18,7 @@
 #include "basics/memory.h"
 #include "basics/status.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <hdf5_hl.h>
 #include <signal.h>
@@ -29,12 +30,12 @@
 const char *const provenance_names[] = {"program", "parameters", "inputs", "model",
                                         NULL};
 
-// Parameters given without -p are what JSON here mostly is, and grains what begins with
-// a number, a comment or ITEM:, so the message says how they go.
+// Parameters given without -p are what JSON here mostly is, and grains what other text
+// is (it may begin with the mark of UTF-8), so the message says how they go.
 static const char *hint_for(char first)
 {
     if (first == '{') return "; parameters, in JSON, go by -p";
-    return first && strchr("0123456789-.# I", first)
+    return isprint((unsigned char)first) || first == '\xef'
                ? "; grains as text go to pack first"
                : "";
 }
