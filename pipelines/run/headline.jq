@@ -25,5 +25,5 @@ def word(one; many): if . == 1 then "1 \(one)" else "\(.) \(many)" end;
         + (if $runs > 1 then " a run" else "" end) + ", under which "
         + ($u.cracks | few | word("bond"; "bonds")) + " broke"
         + (if $u.cracks == 0 then ""
-           else ". That count may change once grains come to rest: run again with dem-replay.cycles and most_cycles doubled "
-             + "(engine=quasi-static, which has no time steps: with engine=explicit) and compare" end) end)
+           else ". That count may change once grains come to rest: run again with dem-replay.engine=explicit and "
+             + "twice the dem-replay.cycles and most_cycles, and compare" end) end)

@@ -179,8 +179,8 @@ def markdown(summary, study):
     if summary.get("moving"):
         found = summary["moving"]
         yield from ["", f"In {found['runs']} of {found['of']} runs grains still moved at the end of loads; {100 * found['share']:.3g} % of all "
-                    "broken bonds broke under these. Their number may change once grains come to rest: run again with dem-replay.cycles and "
-                    "most_cycles doubled (engine=quasi-static, which has no time steps: with engine=explicit) and compare."]
+                    "broken bonds broke under these. Their number may change once grains come to rest: run again with "
+                    "dem-replay.engine=explicit and twice the dem-replay.cycles and most_cycles, and compare."]
     if summary["tests"]:
         yield from ["", *tests_table(summary, study)]
 

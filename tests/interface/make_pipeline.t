@@ -498,8 +498,8 @@ cracks() { echo "{\"total\": $1, \"normal\": $2, \"shear\": $3}"; }
 is 'one run' 'one run: 75 of 625 bonds broke, 24 in tension, 51 in shear; every load came to rest' \
     "$(told "{\"runs\": 1, \"bonds\": 625, \"cracks\": $(cracks 75 24 51), \"confidence_interval\": null,
         \"mean\": {\"cracks\": $(cracks 75 24 51), \"unsettled\": {\"loads\": 0, \"cracks\": 0}}}")"
-again='. That count may change once grains come to rest: run again with dem-replay.cycles and most_cycles doubled
- (engine=quasi-static, which has no time steps: with engine=explicit) and compare'
+again='. That count may change once grains come to rest: run again with dem-replay.engine=explicit and
+ twice the dem-replay.cycles and most_cycles, and compare'
 again=${again//$'\n'/}
 is 'one that did not settle: what to do' \
     'one run: 5 of 9 bonds broke, 2 in tension, 3 in shear; grains still moved at the end of 1 load, under which 2 bonds broke'"$again" \
