@@ -191,7 +191,8 @@ const struct parameter pack_table[] = {
      .text = "length of a unit of INPUT: 1e-3 where it is in millimetres, 1e-6 in "
              "micrometres"},
     {"import.diameters", PARAMETER_BOOLEAN, "1", "false", AT(import_diameters),
-     .text = "INPUT has diameters in place of radii"},
+     .text = "INPUT has diameters in place of radii (the column diameter of a dump "
+             "needs nothing)"},
     {"check", PARAMETER_CHOICE, "1", "\"refuse\"", AT(check),
      .choices = "refuse|warn|none",
      .text = "refuse: grains in one place or wholly outside the box, or with more "
