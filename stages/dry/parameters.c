@@ -158,8 +158,8 @@ const struct parameter dry_table[] = {
          "largest sum of the errors of evaporation, over the rate, until the vapour "
          "is found again in all of the gas (until then it changes only near nodes "
          "that dry); 0: found at each event; null: 0.3, 0.15 with rings=films, "
-         "above 2000 nodes on the open walls if this takes less than half of the time; "
-         "else 0, as with kelvin, flow_step=0 in viscous liquid, or a "
+         "above 1000 nodes on the open walls where this is estimated to take less "
+         "time; else 0, as with kelvin, flow_step=0 in viscous liquid, or a "
          "vapour_tolerance"},
     {"step_interval", PARAMETER_NUMBER, "1", "null", AT(conditions.step_interval),
      BETWEEN(0, 1),

@@ -40,9 +40,9 @@ static const double SMALL_BYTES = 22000, GRAIN_BYTES = 54, THROAT_BYTES = 107;
 // Events are recorded one by one up to so many throats, above in a thousand steps.
 static const double MOST_BY_EVENTS = 30000, COARSE_STEPS = 1e-3;
 
-// The vapour is kept for a while where this takes half of the time, from so many nodes
-// on the open walls on.
-static const double LEAST_OPEN_NODES_TO_KEEP = 2000, KEPT_STEP = 0.3, HALF = 0.5;
+// The vapour is kept for a while where this takes less than such a part of the time,
+// from so many nodes on the open walls on.
+static const double LEAST_OPEN_NODES_TO_KEEP = 1000, KEPT_STEP = 0.3, LESS = 0.8;
 
 static struct cost cost_of(double seconds, double mebibytes)
 {
@@ -130,13 +130,13 @@ static double seconds_by_events(double face, bool exact)
 // dry in between, STEP of the open face.
 static double seconds_by_steps(double face, double throats, double step)
 {
-    return 2e-6 + 2.5e-9 * face + 5.2e-8 * throats / (face * step);
+    return 2e-6 + 2.5e-9 * face + 3.5e-8 * throats / (face * step);
 }
 
 double default_vapour_step(double open_nodes, double throats)
 {
     const bool pays = seconds_by_steps(open_nodes, throats, KEPT_STEP) <
-                      HALF * seconds_by_events(open_nodes, true);
+                      LESS * seconds_by_events(open_nodes, true);
     return pays && open_nodes > LEAST_OPEN_NODES_TO_KEEP ? KEPT_STEP : 0;
 }
 

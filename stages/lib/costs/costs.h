@@ -57,8 +57,8 @@ struct cost cost_of_drying(const struct body_size *body, bool kelvin, bool exact
                            double step);
 
 // dry.vapour_step by default with so many nodes on the open walls, without films: above
-// 0 where it takes half of the time that the vapour at each event takes, and there are
-// 2000 such nodes. In deep bodies it takes longer, as all of the gas is found again.
+// 0 where it takes less time than the vapour at each event, and there are more than
+// 1000 such nodes. In deep bodies it takes longer, as all of the gas is found again.
 double default_vapour_step(double open_nodes, double throats);
 
 // What the flow of viscous liquid adds, found at each event, or KEPT for a while.

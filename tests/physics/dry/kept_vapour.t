@@ -93,10 +93,10 @@ with scratch_paths() as at:
     def is_kept(*settings):
         return "vapour found again when" in model(*settings)
 
-    for edge, wide in (43, False), (44, True):  # edge + 1 nodes along x and y
+    for edge, wide in (30, False), (31, True):  # edge + 1 nodes along x and y
         run("pack", "-q", *sets(f"counts=[{edge},{edge},1]"), "-o", at("packing"))
         run("tessellate", "-q", *sets("conductance=cylinder"), at("packing"), "-o", at("wide"))
-        ok(is_kept() == wide, f"{(edge + 1)**2} nodes on the open face: by default kept from 2000 on")
+        ok(is_kept() == wide, f"{(edge + 1)**2} nodes on the open face: by default kept from 1000 on")
     ok(not is_kept("vapour_tolerance=1e-6") and not is_kept("vapour_step=0"), "but not where an error is asked for")
     both = model("vapour_tolerance=1e-6", "vapour_step=0.2")
     ok("vapour found again when" in both and "errors add up to" not in both,
