@@ -42,36 +42,44 @@ void gas_preconditioner_free(struct gas_preconditioner *gas)
     free(gas);
 }
 
-double gas_preconditioner_follow(struct gas_preconditioner *gas,
-                                 const struct conductance_matrix *matrix)
+// LINK has room for those left and all of the rows. Returns how many.
+static int links_of_front(const struct gas_preconditioner *gas,
+                          const struct conductance_matrix *matrix, struct link *link)
 {
-    const int n = matrix->n, n_inner = gas->n_inner, ground = n - n_inner;
-    const int most = matrix->offset[n] - matrix->offset[n_inner];
-    struct link *link = NEW_ARRAY(struct link, gas->n_link + most);
-    int n_link = 0;
+    const int n = matrix->n, first = gas->n_inner, ground = n - first;
+    int count = 0;
     for (int l = 0; l < gas->n_link; l++) {
-        const struct link *left = &gas->link[l];
-        link[n_link++] = (struct link){
-            {left->site[0] - n_inner,
-             left->site[1] < gas->n_first ? left->site[1] - n_inner : ground},
-            left->conductance};
+        const int *site = gas->link[l].site;
+        link[count++] = (struct link){
+            {site[0] - first, site[1] < gas->n_first ? site[1] - first : ground},
+            gas->link[l].conductance};
     }
-    for (int row = n_inner; row < n; row++)
+    for (int row = first; row < n; row++)
         for (int k = matrix->offset[row]; k < matrix->offset[row + 1]; k++) {
             const int other = matrix->column[k];
             if (other > row)
-                link[n_link++] =
-                    (struct link){{row - n_inner, other < n ? other - n_inner : ground},
+                link[count++] =
+                    (struct link){{row - first, other < n ? other - first : ground},
                                   matrix->value[k]};
         }
+    return count;
+}
+
+double gas_preconditioner_follow(struct gas_preconditioner *gas,
+                                 const struct conductance_matrix *matrix)
+{
+    const int n_front = matrix->n - gas->n_inner;
+    const int most = matrix->offset[matrix->n] - matrix->offset[gas->n_inner];
+    struct link *link = NEW_ARRAY(struct link, gas->n_link + most);
+    const int n_link = links_of_front(gas, matrix, link);
     struct conductance_matrix front =
-        conductance_matrix_of_links(ground, ground + 1, n_link, link);
-    gas->n = n;
+        conductance_matrix_of_links(n_front, n_front + 1, n_link, link);
+    gas->n = matrix->n;
     approximate_cholesky_free(gas->front);
     gas->front = approximate_cholesky_create(&front);
     conductance_matrix_free(&front);
     free(link);
-    return (double)ground / n;
+    return (double)n_front / matrix->n;
 }
 
 void gas_preconditioner_apply(struct gas_preconditioner *gas, const double *b,
