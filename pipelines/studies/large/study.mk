@@ -14,7 +14,7 @@ large_folder := $(RUNS)/large$(if $(filter-out %/irregular-50000.json,$(LARGE_SC
 # Stage $2, program $3, of the scene, with overrides $4 and inputs $5; its cost is kept.
 large_step = $(call step,$(large_folder)/$1,$2,pipelines/studies/large/timed $3,$(LARGE_SCENE),$4,$(5:%=$(large_folder)/%))
 
-large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (six minutes of two cores)
+large: ## cracks in an irregular aggregate of 50,000 grains, and what each stage takes (five minutes of two cores with THREADS=2)
 
 ifneq ($(call asked,large,$(large_folder)),)
 $(if $(GRAINS),$(call must,GRAINS,$(whole),a whole number))
