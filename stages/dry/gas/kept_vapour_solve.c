@@ -185,20 +185,25 @@ static int correct(struct kept_vapour *kept, double reduction)
     return iterations;
 }
 
-// Returns what the front takes, in iterations.
-static double follow_with_factor(struct kept_vapour *kept)
+static void eliminate_inner_rows(struct kept_vapour *kept)
 {
-    const bool is_new = !kept->preconditioner;
-    const int n_inner = is_new ? sort_rows(kept) : 0;
-    if (is_new) kept->balances.n = 0;
+    const int n_inner = sort_rows(kept);
+    kept->balances.n = 0;
     add_rows(kept);
-    if (is_new) {
-        kept->preconditioner =
-            gas_preconditioner_create(&kept->balances, n_inner, kept->links.n);
-        kept->solutions = 0;
-        kept->cost = ITERATIONS_OF_FACTOR;
-        find_flows(kept);
-    }
+    find_flows(kept);
+    kept->preconditioner =
+        gas_preconditioner_create(&kept->balances, n_inner, kept->links.n);
+    kept->solutions = 0;
+    kept->cost = ITERATIONS_OF_FACTOR;
+}
+
+// Returns what the front takes, in iterations.
+static double prepare(struct kept_vapour *kept)
+{
+    if (kept->preconditioner)
+        add_rows(kept);
+    else
+        eliminate_inner_rows(kept);
     return ITERATIONS_OF_FACTOR *
            gas_preconditioner_follow(kept->preconditioner, &kept->balances);
 }
@@ -217,7 +222,7 @@ static void judge_factor(struct kept_vapour *kept, double cost)
 void kept_vapour_solve(struct kept_vapour *kept)
 {
     const double before = compensated_value(kept->air.all), waiting = kept->on_its_way;
-    double cost = follow_with_factor(kept);
+    double cost = prepare(kept);
     int corrections = 0;
     for (; corrections < MOST_CORRECTIONS; corrections++) {
         const double error = kept_vapour_error(kept);
