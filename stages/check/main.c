@@ -198,8 +198,8 @@ static struct packing read_input(const struct invocation *invocation,
         parameters->conditions.property[FLUID_SURFACE_TENSION];
     parameters->material.contact_angle = parameters->conditions.contact_angle;
     bool has_box;
-    struct packing packing =
-        read_grains(path, NULL, parameters->frame, &has_box, unit, inputs);
+    struct packing packing = read_grains(path, NULL, parameters->frame, &has_box, unit,
+                                         &parameters->import_diameters, inputs);
     if (!is_text(inputs)) leave_to_pack(invocation, parameters);
     if (parameters->import_scale != 1) *unit = 0;
     convert_grains(&packing, parameters->import_scale, parameters->import_diameters,

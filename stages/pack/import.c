@@ -68,16 +68,15 @@ static void warn_of_periodic(const char *path, const struct packing *packing,
 static struct packing import(const char *path, const struct pack_parameters *parameters,
                              bool quiet, double *unit, json_t *inputs)
 {
-    bool has_box;
-    struct packing packing =
-        read_grains(path, "packing", parameters->frame, &has_box, unit, inputs);
+    bool has_box, diameters = parameters->import_diameters;
+    struct packing packing = read_grains(path, "packing", parameters->frame, &has_box,
+                                         unit, &diameters, inputs);
     if (parameters->import_scale != 1) *unit = 0;
     for (int axis = 0; axis < 3 && !has_box; axis++)
         packing.periodic[axis] = parameters->domain.periodic[axis];
     if (has_box && !quiet)
         warn_of_periodic(path, &packing, parameters->domain.periodic);
-    convert_grains(&packing, parameters->import_scale, parameters->import_diameters,
-                   has_box);
+    convert_grains(&packing, parameters->import_scale, diameters, has_box);
     refuse_large_radii(&packing, path);
     const double below = packing.lower.z, above = packing.upper.z;
     apply_box(&packing, parameters);

@@ -17,14 +17,15 @@
 #include <string.h>
 
 static struct packing read_lines(const char *path, struct bytes text, int64_t frame,
-                                 double *unit, json_t *inputs)
+                                 double *unit, bool *diameters, json_t *inputs)
 {
     struct packing packing;
     struct reason reason;
     const bool is_dump = is_lammps(&text);
     if (is_dump) *unit = lammps_unit(&text);
-    const enum status status = is_dump ? import_lammps(&text, frame, &packing, &reason)
-                                       : import_text(&text, &packing, unit, &reason);
+    const enum status status =
+        is_dump ? import_lammps(&text, frame, &packing, diameters, &reason)
+                : import_text(&text, &packing, unit, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);
     char digest[65];
     sha256(text.data, text.size, digest);
@@ -65,7 +66,7 @@ static bool may_hold_grains(const struct bytes *beginning)
 // An empty standard input gets a line of its own: mostly an input was forgotten. The
 // bytes of an artifact become its image, those of text are freed here.
 struct packing read_grains(const char *path, const char *schema, int64_t frame,
-                           bool *has_box, double *unit, json_t *inputs)
+                           bool *has_box, double *unit, bool *diameters, json_t *inputs)
 {
     struct bytes bytes = read_whole_of(path, may_hold_grains);
     if (!bytes.size && !strcmp(path, "-"))
@@ -75,7 +76,8 @@ struct packing read_grains(const char *path, const char *schema, int64_t frame,
     if (unit) *unit = 0;
     if (has_box) *has_box = is_hdf5(&bytes) || is_lammps(&bytes);
     if (is_hdf5(&bytes)) return read_artifact(path, bytes, schema, inputs);
-    const struct packing packing = read_lines(path, bytes, frame, &of_text, inputs);
+    const struct packing packing =
+        read_lines(path, bytes, frame, &of_text, diameters, inputs);
     if (unit) *unit = of_text;
     bytes_free(&bytes);
     return packing;

@@ -38,7 +38,9 @@ double lammps_unit(const struct bytes *text);
 
 // One frame of it, from 0 (-1: the last), in the order of the grains' ids. Positions
 // x|xu|xs|xsu (and so on), radius or diameter; box and periodic sides as it says.
-// Lengths are in the units of the dump. STATUS_BAD_DATA with the line in REASON. On
-// success the caller frees *PACKING.
+// Lengths are in the units of the dump. *DIAMETERS becomes true where the radii are
+// diameters by the name of their column, and is else left as it is. STATUS_BAD_DATA
+// with the line in REASON. On success the caller frees *PACKING.
 enum status import_lammps(const struct bytes *text, int64_t frame,
-                          struct packing *packing, struct reason *reason);
+                          struct packing *packing, bool *diameters,
+                          struct reason *reason);

@@ -35,7 +35,7 @@ enum scaling { PLAIN, SCALED }; // x; xs, from 0 to 1 across the box
 struct columns {
     int place[3], radius, id; // which column, from 0; -1: none
     enum scaling scaling;
-    double to_radius; // 1; 0.5 for diameters
+    bool diameters; // in column RADIUS
 };
 
 struct grain {
@@ -163,7 +163,7 @@ static enum status read_columns(const struct lines *lines, const char *names,
         const bool diameter = !strcmp(name, "diameter");
         if (!diameter && strcmp(name, "radius")) continue;
         columns->radius = k;
-        columns->to_radius = diameter ? 0.5 : 1;
+        columns->diameters = diameter;
     }
     if (columns->place[0] < 0 || columns->place[1] < 0 || columns->place[2] < 0)
         return bad_line(lines, "ITEM: ATOMS with columns x, y and z (or xu, xs, xsu)",
@@ -213,7 +213,7 @@ static enum status read_grain(const struct lines *lines, const struct columns *c
         if (box->periodic[axis]) at -= edge * floor((at - low) / edge);
         set_component(&grain->position, axis, at);
     }
-    grain->radius = columns->to_radius * row[columns->radius];
+    grain->radius = row[columns->radius];
     grain->id = columns->id < 0 ? 0 : row[columns->id];
     if (!finite || !isfinite(grain->radius))
         return bad_line(lines, "finite numbers", reason);
@@ -241,11 +241,13 @@ static bool ids_differ(const struct grain *grain, int n)
 // Without ids grains keep the order of the rows. Memory grows with the rows that are
 // there, not with N.
 static enum status read_grains(struct lines *lines, const char *names, int64_t n,
-                               struct packing *packing, struct reason *reason)
+                               struct packing *packing, bool *diameters,
+                               struct reason *reason)
 {
     struct columns columns;
     enum status status = read_columns(lines, names, &columns, reason);
     if (status) return status;
+    *diameters |= columns.diameters;
     struct grain *grain = NULL;
     int count = 0, capacity = 0; // not N at once: a damaged file may claim anything
     while (!status && count < n) {
@@ -276,7 +278,7 @@ static enum status read_grains(struct lines *lines, const char *names, int64_t n
 
 // Items may come in any order before ATOMS, which ends the frame.
 static enum status read_frame(struct lines *lines, struct packing *packing,
-                              struct reason *reason)
+                              bool *diameters, struct reason *reason)
 {
     int64_t n = -1;
     bool has_box = false;
@@ -295,14 +297,15 @@ static enum status read_frame(struct lines *lines, struct packing *packing,
             if (n < 0 || !has_box)
                 return bad_line(
                     lines, "after ITEM: NUMBER OF ATOMS and ITEM: BOX BOUNDS", reason);
-            return read_grains(lines, more, n, packing, reason);
+            return read_grains(lines, more, n, packing, diameters, reason);
         }
     }
     return refuse(reason, STATUS_BAD_DATA, "ends before the grains of the frame");
 }
 
 enum status import_lammps(const struct bytes *text, int64_t frame,
-                          struct packing *packing, struct reason *reason)
+                          struct packing *packing, bool *diameters,
+                          struct reason *reason)
 {
     *packing = (struct packing){0};
     char *copy = NULL;
@@ -310,7 +313,7 @@ enum status import_lammps(const struct bytes *text, int64_t frame,
     if (status) return status;
     struct lines lines = {.rest = copy};
     status = find_frame(&lines, frame, reason);
-    if (!status) status = read_frame(&lines, packing, reason);
+    if (!status) status = read_frame(&lines, packing, diameters, reason);
     if (status) packing_free(packing);
     free(copy);
     return status;

@@ -232,6 +232,8 @@ mixed = dump("id element xs ys zs vx diameter",
 scaled = imported(mixed)
 ok(np.allclose(scaled.x, position, rtol=0, atol=1e-14) and np.allclose(scaled.r, radius, atol=0),
    "scaled places, diameters and words, in the order of the ids")
+ok(np.array_equal(imported(mixed, "import.diameters=true").r, scaled.r),
+   "import.diameters beside a column diameter halves once")
 unwrapped = dump("id xu yu zu radius",
                  lambda i: (i, *(position[i] + [3 * (i % 3), 0, -6]).tolist(), radius[i]), 0)
 ok(np.allclose(imported(unwrapped).x, position, rtol=0, atol=1e-14),
