@@ -127,12 +127,13 @@ def notes(plan, folder):
         print((f"{len(paths)} times: " if len(paths) > 1 else "") + spanned(texts), file=sys.stderr)
 
 
-def tell_empty(summary, rows):
+def tell_empty(study, rows):
     """Names what is to be measured and is in none of the runs that are done: misspelt, or nothing to measure."""
     ready = [r for r in rows if r["status"] == "done"]
-    for name in summary["points"][0]["measures"] if ready else []:
-        if all(r[name] is None for r in ready):
-            print(f"measure {name}: none of the {len(ready)} done runs has such a number", file=sys.stderr)
+    none = f"none of the {len(ready)} done runs has" if len(ready) > 1 else "the run that is done does not have"
+    for measure in study.measures if ready else []:
+        if all(r[measure.name] is None for r in ready):
+            print(f"measure {measure.name}: {none} such a number", file=sys.stderr)
 
 
 def show(rows, folder, written):

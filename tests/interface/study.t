@@ -273,6 +273,10 @@ ok(fine and [[r["stress.last"], r["rings.mean"], r["nothing"]] for r in found]
    == [[one["stress"][-1], np.mean(one["rings"]), None] for one in alone] and os.path.exists(at("runs/rings/figure.svg")),
    "lists are measured too, and what is nowhere is left out of the picture", (wrong, found))
 ok("measure nothing: none of the 2 done runs has such a number" in wrong and wrong.count("measure ") == 1, "and is told", wrong)
+write("misspelt-measure.json", {"scene": "scene.json", "seeds": 1, "axes": [{"key": "pack.radius", "from": 1e-7, "to": 2e-7, "count": 8}],
+                                "measure": ["packing:summary/contcats"]})
+wrong = study("make", "misspelt-measure.json")[3]
+ok("measure summary.contcats: the run that is done does not have such a number\n" in wrong, "of eight runs after the first", wrong)
 
 # A short logarithmic axis has labels 1, 2 and 5, however many values: labels of eight values lay over each other.
 write("logarithmic.json", {"scene": "scene.json", "seeds": 1, "axes": [
