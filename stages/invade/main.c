@@ -336,20 +336,13 @@ static void check_walls(const struct invasion_conditions *conditions, bool trans
             "invade.outlet: must have no wall in common with the inlet");
 }
 
-// A box that repeats has no sides on that axis: the others of a list would be taken
-// alone.
 static struct network network_with_sides(struct artifact *input,
-                                         const struct invasion_conditions *conditions)
+                                         const struct invade_parameters *parameters)
 {
     const struct network network = artifact_get_periodic_network(input);
-    for (int wall = 0; wall < 6; wall++)
-        if (((conditions->inlet | conditions->outlet) & 1u << wall) &&
-            network.packing.periodic[wall / 2])
-            die(STATUS_BAD_DATA,
-                "invade.%s: must not name %c%c, as the box of %s repeats along %c",
-                conditions->inlet & 1u << wall ? "inlet" : "outlet",
-                wall % 2 ? '+' : '-', "xyz"[wall / 2], input_name(input->path),
-                "xyz"[wall / 2]);
+    refuse_repeated(input, &network, parameters->invasion.inlet, "invade.inlet");
+    refuse_repeated(input, &network, parameters->invasion.outlet, "invade.outlet");
+    refuse_repeated(input, &network, parameters->imposed_empty, "invade.imposed_empty");
     return network;
 }
 
@@ -393,7 +386,7 @@ int main(int argc, char **argv)
     check_rings(&parameters);
     complete_entry(&parameters);
     struct artifact *input = open_full_network(invocation.inputs[0]);
-    struct network network = network_with_sides(input, conditions);
+    struct network network = network_with_sides(input, &parameters);
 
     struct reason reason;
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))

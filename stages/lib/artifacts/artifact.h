@@ -136,6 +136,10 @@ struct packing artifact_get_solid_packing(const struct artifact *artifact,
 // box.
 struct network artifact_get_network(const struct artifact *artifact);
 struct network artifact_get_periodic_network(const struct artifact *artifact);
+// Exits 65 where a side of WALLS (bits of enum wall), which parameter KEY names, is on
+// an axis along which the box of NETWORK, that of ARTIFACT, repeats: it has none there.
+void refuse_repeated(const struct artifact *artifact, const struct network *network,
+                     unsigned walls, const char *key);
 
 // What happened in a drying. A foreign one may have no step. The caller frees it with
 // drying_record_free.

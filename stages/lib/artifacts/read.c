@@ -543,6 +543,18 @@ struct network artifact_get_periodic_network(const struct artifact *artifact)
     return network;
 }
 
+// The others of a list would be taken alone.
+void refuse_repeated(const struct artifact *artifact, const struct network *network,
+                     unsigned walls, const char *key)
+{
+    for (int wall = 0; wall < 6; wall++)
+        if (walls & 1u << wall && network->packing.periodic[wall / 2])
+            die(STATUS_BAD_DATA,
+                "%s: must not name %c%c, as the box of %s repeats along %c", key,
+                wall % 2 ? '+' : '-', "xyz"[wall / 2], input_name(artifact->path),
+                "xyz"[wall / 2]);
+}
+
 // /history has a row a step, /changes the throats that change in it: rows offset[k] to
 // offset[k+1] - 1 belong to step k.
 struct drying_record artifact_get_drying(const struct artifact *artifact)

@@ -224,6 +224,9 @@ with scratch_paths() as at:
     os.replace(at("around.h5"), at("network.h5"))
     invade_refuses("an inlet where the box repeats is refused", "invade.inlet: must not name -x", 'inlet=["+z","-x"]')
     invade_refuses("an outlet there too", "invade.outlet: must not name +x", 'outlet=["-z","+x"]')
+    for stage in "invade", "dry":
+        refused(f"and a side imposed empty in {stage}", f"{stage}.imposed_empty: must not name -x, as the box of", stage,
+                *sets('imposed_empty=["-x","-z"]'), at("network.h5"), "-o", at("none.h5"))
     os.replace(at("kept.h5"), at("network.h5"))
     # 100 +- 60 nm: Simpson's rule in tests/physics/network/throat_radius.c has what is left.
     words = sum((["--set", "throat_radius." + word] for word in
