@@ -142,6 +142,11 @@ void judge_bonds(const struct packing *packing, const struct packing_facts *pack
             "bonds join %d of %d grains to one piece (%d pieces, %d grains without "
             "a bond): %s",
             facts->largest, n, facts->pieces, facts->without, what);
+}
+
+void judge_support(const struct packing *packing, const struct packing_facts *packed,
+                   const struct bond_facts *facts, struct findings *findings)
+{
     if (!packing->n_bond || packing->periodic[2] || facts->at_bottom >= 3) return;
     add_finding(findings, FINDING_NOTE, "support",
                 "%d grain%s the lower z wall, all that dem-replay holds by default: "

@@ -21,3 +21,6 @@ struct bond_facts bond_facts(const struct packing *packing);
 // Nothing is said of fewer than two grains.
 void judge_bonds(const struct packing *packing, const struct packing_facts *packed,
                  const struct bond_facts *facts, struct findings *findings);
+// The same of the grains that dem-replay holds by default.
+void judge_support(const struct packing *packing, const struct packing_facts *packed,
+                   const struct bond_facts *facts, struct findings *findings);

@@ -143,11 +143,14 @@ static bool have_other_units(const struct findings *findings)
 }
 
 // Without grains there is nothing to judge but that, and in wrong units neither
-// defaults nor weight. The worst come first whatever the order here (add_finding).
+// defaults nor weight. Of defaults of dem-replay only those that its section REPLAY of
+// the scene (NULL: none) leaves. The worst come first whatever the order here
+// (add_finding).
 static struct findings judge(const struct packing *packing,
                              const struct packing_facts *facts,
                              const struct bond_facts *bonds,
-                             const struct bond_numbers *weight, double gap)
+                             const struct bond_numbers *weight, double gap,
+                             const json_t *replay)
 {
     struct findings findings = {0};
     if (!facts->n)
@@ -156,10 +159,12 @@ static struct findings judge(const struct packing *packing,
     judge_packing(packing, facts, &findings);
     judge_rounding(packing, facts, gap, &findings);
     judge_bonds(packing, facts, bonds, &findings);
+    if (!json_object_get(replay, "held") && !json_object_get(replay, "support"))
+        judge_support(packing, facts, bonds, &findings);
     judge_ends(packing, facts, bonds, &findings);
     judge_free(facts, &findings);
     if (have_other_units(&findings)) return findings;
-    judge_defaults(facts, &findings);
+    if (!json_object_get(replay, "normal_stiffness")) judge_defaults(facts, &findings);
     judge_weight(weight, &findings);
     return findings;
 }
@@ -227,7 +232,9 @@ int main(int argc, char **argv)
     const struct bond_facts bonds = bond_facts(&body);
     const struct bond_numbers weight =
         expected_bond_numbers(&parameters.material, &body, &facts);
-    const struct findings findings = judge(&body, &facts, &bonds, &weight, gap);
+    const struct findings findings =
+        judge(&body, &facts, &bonds, &weight, gap,
+              json_object_get(invocation.scene, "dem-replay"));
     const struct checked checked = {
         &body, &contacts, &facts, &bonds, &findings, &weight, &parameters.material};
     const int wrong = count_wrong(&findings);

@@ -400,6 +400,12 @@ run("pack", "-q", "-p", at("beads.json"), beads_mm, "-o", at("beads-packed"))
 packed = check(at("beads-packed"), "-p", at("beads.json"))[1]
 ok(packed["radius"] == by_hand["radius"] and packed["contacts"] == by_hand["contacts"] and packed == check(
     at("beads-packed"), *sets("touching_gap=0.05"))[1], "what pack wrote is in metres already", packed["radius"])
+for says, noted in [({}, {"support", "defaults"}), ({"held": {"upper": [1, 1, 1e-3]}}, {"defaults"}), ({"support": "free"}, {"defaults"}),
+                    ({"normal_stiffness": 1e5}, {"support"})]:
+    with open(at("replay.json"), "w") as file:
+        json.dump({"dem-replay": says}, file)
+    found = {f["name"] for f in check(beads_mm, "-p", at("replay.json"), *sets("import.scale=1e-3"))[1]["findings"]}
+    ok(found & {"support", "defaults"} == noted, f"dem-replay says {says}: nothing else is noted as lacking", found)
 with open(at("beads.json"), "w") as file:
     json.dump({"pack": {"import": {"scale": -1}}}, file)
 status, _, said = call("check", "-p", at("beads.json"), beads_mm)

@@ -391,13 +391,12 @@ static void borrow(const struct command_line *line, const json_t *scene,
 // from.
 static void fill(const struct command_line *line, void *parameters)
 {
-    json_t *scene;
-    json_t *section = load_section(line, &scene);
+    json_t **scene = &line->invocation->scene;
+    json_t *section = load_section(line, scene);
     for (int k = 0; k < line->n_set; k++)
         set(section, line->stage, line->set[k]);
     line->invocation->borrowed = json_object();
-    if (scene) borrow(line, scene, section, parameters);
-    json_decref(scene);
+    if (*scene) borrow(line, *scene, section, parameters);
     char where[300];
     snprintf(where, sizeof where, "%s%s%s%s", line->params ? line->params : "",
              line->params && line->n_set ? " with --set" : "", line->params ? ": " : "",
@@ -555,5 +554,6 @@ void invocation_free(struct invocation *invocation)
     free(invocation->inputs);
     json_decref(invocation->parameters);
     json_decref(invocation->borrowed);
+    json_decref(invocation->scene);
     *invocation = (struct invocation){0};
 }

@@ -69,6 +69,7 @@ struct invocation {
     enum progress_mode progress;
     json_t *parameters; // effective, defaults filled in
     json_t *borrowed;   // keys of those that the section of another stage said
+    json_t *scene;      // the file of -p; NULL: there is none, or it is no scene
 };
 
 // Parses the command line, reads the parameters, fills the stage's struct PARAMETERS.
