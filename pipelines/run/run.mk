@@ -91,6 +91,12 @@ endif
 # layer whose liquid dem-replay itself drains, which takes no drying.
 run_stages := $(if $(filter simulate,$(MAKECMDGOALS)),pack simulate,pack tessellate merge-nodes dry force-protocol \
 	dem-replay crackstats $(filter report,$(MAKECMDGOALS)))
+# A folder holds one scene: another file of the same name in another folder would take its place.
+define keep_to_scene
+of=$$(cat $(run_folder)/scene.path 2>/dev/null || true); if [[ -e $$of && ! $$of -ef $(SCENE) ]]; then \
+		echo "$(run_folder): holds the run of $$of: NAME= gives that of $(SCENE) another folder" >&2; exit 73; fi; \
+		mkdir -p $(run_folder) && realpath $(SCENE) >$(run_folder)/scene.path
+endef
 ifdef really
 .PHONY: sections
 $(run_folder)/packing.h5: | sections
@@ -98,6 +104,7 @@ sections: | $(run_stages:%=$(BUILD)/bin/%)
 	@for stage in $(run_stages); do \
 		$(BUILD)/bin/$$stage -p $(SCENE) --parameters >/dev/null || exit; done
 	$(if $(filter dem-replay,$(run_stages)),$(if $(filter $(BUILD)/bin/dem-replay,$(DEM_REPLAY)),@$(refuse_drains)))
+	@$(keep_to_scene)
 endif
 run: $(run_folder)/crackstats.json ## run the pipeline: make run SCENE=samples/x.json
 ifdef really

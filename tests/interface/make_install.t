@@ -89,6 +89,10 @@ refused 'a key that is none, before any work' 65 'crackstats.slice: unknown key'
 refused 'a layer that drains by itself' 65 'samples/craquelure-wet-40.json: dem-replay.capillary drains the packing itself' \
     run craquelure-wet-40 --name=never
 is 'no work was done' no "$([[ -e runs/never ]] && echo yes || echo no)"
+mkdir elsewhere
+cp own.json elsewhere
+refused 'a scene of the name of another' 73 "^craquelure run: runs/own: holds the run of .*/own.json: --name gives that of elsewhere/own.json" \
+    run elsewhere/own.json
 echo 'three 2 1' >words.txt
 refused 'the status is that of the stage that failed' 65 'words.txt: line 1: must be four numbers' \
     run own.json --import=words.txt

@@ -380,6 +380,15 @@ for name in ../x .. x/y; do
 done
 is 'NAME=other is the folder of a run' build/runs/other/packing.h5 \
     "$(make -n run SCENE=$scene NAME=other 2>&1 | grep -o 'build/runs/[a-z]*/packing.h5' | sort -u)"
+mkdir elsewhere
+jq '.pack.radius = 2e-7' $scene >elsewhere/x.json
+: >ran
+is 'a scene of the same name elsewhere does not take the folder' \
+    'build/runs/x: holds the run of samples/x.json: NAME= gives that of elsewhere/x.json another folder' \
+    "$(make run SCENE=elsewhere/x.json 2>&1 | grep holds | sed "s|$(realpath .)/||")"
+is 'and nothing runs' '' "$(names <ran)"
+make run SCENE=elsewhere/x.json NAME=elsewhere >said 2>&1
+is 'by another name it runs' "$all" "$(names <ran)"
 is 'a NAME of the environment is not' build/runs/$(basename $scene .json)/packing.h5 \
     "$(NAME=host make -nB run SCENE=$scene 2>&1 | grep -o 'build/runs/[-a-z0-9]*/packing.h5' | sort -u)"
 is 'nor that of a study, as is one on the command line' '0 1' \
