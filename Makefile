@@ -44,6 +44,7 @@ set_by_user = $(filter command environment,$(origin $1))
 check_name = $(if $(and $(set_by_user),$(unfit)),$(error $1=$(strip $(value $1)): make takes no blanks or signs \
 	in names of files; a link by another name will do))
 $(foreach name,BUILD RUNS NAME SCENE IMPORT MONTE_CARLO_SCENE,$(call check_name,$(name)))
+$(foreach name,BUILD RUNS,$(if $(strip $(value $(name))),,$(error $(name)=: must be the name of a folder)))
 $(if $(and $(call set_by_user,NAME),$(or $(findstring /,$(value NAME)),$(filter . ..,$(value NAME)))),$(error \
 	NAME=$(value NAME): must be the name of a folder, without /; RUNS says where it lies))
 # A word for the shell.

@@ -374,6 +374,10 @@ for variable in SCENE IMPORT RUNS BUILD NAME; do
     refused $variable 'a;touch PWN;' -q SCENE=$scene
     refused $variable 'a;touch PWN;' -B SCENE=$scene
 done
+for variable in BUILD RUNS; do
+    is "$variable= without a name is refused" "$variable=: must be the name of a folder.  Stop." \
+        "$(make -n run SCENE=$scene $variable= 2>&1 | grep -o "$variable=.*")"
+done
 for name in ../x .. x/y; do
     is "NAME=$name would lie elsewhere, and is refused" 1 \
         "$(make study NAME=$name 2>&1 >/dev/null | grep -c 'must be the name of a folder, without /')"
