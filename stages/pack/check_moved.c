@@ -62,14 +62,17 @@ static enum status check_periods(const struct domain *domain, const struct sizes
                                  struct reason *reason)
 {
     const double least = 4.8 * sizes->largest;
+    const bool tails =
+        sizes->distribution == SIZES_NORMAL || sizes->distribution == SIZES_LOGNORMAL;
     const struct vector edge = subtract(domain->upper, domain->lower);
     for (int axis = 0; axis < 3; axis++)
         if (domain->periodic[axis] && component(edge, axis) < least)
             return refuse(reason, STATUS_BAD_DATA,
                           "pack.upper: must make a box of at least %g m along %c, "
                           "which repeats: 2.4 of the largest diameter that pack.sizes "
-                          "allows, %g m, got %g",
-                          least, "xyz"[axis], least / 2.4, component(edge, axis));
+                          "allows, %g m, got %g%s",
+                          least, "xyz"[axis], least / 2.4, component(edge, axis),
+                          tails ? "; pack.sizes.largest cuts off larger grains" : "");
     return STATUS_OK;
 }
 

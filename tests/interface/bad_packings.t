@@ -134,6 +134,8 @@ for words, line in [
 scene("a box that repeats too soon is refused", f"{dense} upper=[1.1e-6,1e-3,1e-3]",
       r"pack.upper: must make a box of at least 1.2e-06 m along x, which repeats: 2.4 of the "
       r"largest diameter that pack.sizes allows, 5e-07 m, got 1.1e-06")
+scene("as one of few grains with rare large ones", f"{dense} count=150 sizes.distribution=lognormal sizes.spread=0.6",
+      r"pack.upper: must make a box of at least 1.64635e-05 m along x, .*; pack.sizes.largest cuts off larger grains")
 scene("a box with walls does not close in", "method=domain_contraction count=100",
       r"pack.method: domain_contraction closes in a box that repeats along all axes "
       r"\(pack.periodic\); between walls use radius_expansion")
