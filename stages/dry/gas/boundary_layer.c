@@ -85,6 +85,14 @@ static void keep_outermost(const struct open_surface *face, int n_marked, bool *
     free(spot);
 }
 
+static bool is_round_at(const struct packing *packing, int wall)
+{
+    for (int k = 0; k < packing->n_body; k++)
+        if (packing->body[k].within && body_is_round(&packing->body[k], wall / 2))
+            return true;
+    return false;
+}
+
 static enum status find_feet(const struct open_surface *face, enum boundary_feet feet,
                              struct boundary_layer *layer, struct reason *reason)
 {
@@ -102,8 +110,12 @@ static enum status find_feet(const struct open_surface *face, enum boundary_feet
     free(foot);
     if (n_marked) return STATUS_OK;
     return feet == FEET_SURFACE
-               ? refuse(reason, STATUS_BAD_DATA, "no throat reaches the open wall %s",
-                        names[face->wall])
+               ? refuse(reason, STATUS_BAD_DATA, "no throat reaches the open wall %s%s",
+                        names[face->wall],
+                        is_round_at(&network->packing, face->wall)
+                            ? ": the body is round there, and dries through flat sides "
+                              "of the box alone"
+                            : "")
                : refuse(reason, STATUS_BAD_DATA,
                         "/throats/kind: no throat of the boundary layer begins at the "
                         "network (pack.extra_layer makes them)");

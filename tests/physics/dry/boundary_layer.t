@@ -112,6 +112,12 @@ with scratch_paths() as at:
            f"{label}: the first rate is that of its open face",
            (rate - 1, area / network.face(2)))
 
+    run("pack", "-q", *sets("method=random_sequential", "count=60", "radius=2e-7", "domain.shape=sphere", "domain.radius=1.5e-6"), "-o", at("ball"))
+    run("tessellate", "-q", at("ball"), "-o", at("t"))
+    said = subprocess.run([f"{BIN}/dry", at("t"), "-o", at("d")], capture_output=True, text=True)
+    ok(said.returncode == 65 and said.stderr.endswith("no throat reaches the open wall +z: the body is round there, and "
+       "dries through flat sides of the box alone\n"), "a sphere has no side that dries, and is told so", said.stderr)
+
     # ---- cut cells left out: nodes know the walls they face ----------------------------
     cut = make("n", settled, threshold=0)
     cuts = np.zeros((len(cut.grain), 6), bool)
