@@ -37,16 +37,17 @@ SLOW = ("engine=explicit", "tolerance=1e-6", "most_cycles=1000000", "ramp=20000"
 
 KEYS = ("normal_stiffness", "shear_stiffness", "bond.normal_stiffness", "bond.shear_stiffness",
         "bond.normal_strength", "bond.shear_strength")
+THICKNESS = "bond.radius_fraction"
 
 
 def effective(scene):
-    """The parameters of dem-replay in SCENE that the tests change."""
+    """The parameters of dem-replay in SCENE that the tests change, KEYS, and the THICKNESS of bonds."""
     said = subprocess.run([f"{BIN}/dem-replay", "-p", scene, "--parameters"], capture_output=True, text=True, check=False)
     if said.returncode:
         refuse(said.returncode, said.stderr.strip())
     parameters = json.loads(said.stdout)
     found = {}
-    for key in KEYS:
+    for key in (*KEYS, THICKNESS):
         value = parameters
         for name in key.split("."):
             value = value[name]
@@ -207,7 +208,7 @@ class Specimen:
     def moduli(self, axis, bond, how=ELASTIC):
         """E and nu of bonds that do not break."""
         whole = {**bond, "bond.normal_strength": UNBREAKABLE, "bond.shear_strength": UNBREAKABLE}
-        stress = 1e-9 * bond["bond.normal_stiffness"] * self.r.mean()
+        stress = 1e-9 * min(1, 2 * bond[THICKNESS])**2 * bond["bond.normal_stiffness"] * self.r.mean()  # thin ones bend
         with self.pull(axis, [0, stress], whole, how) as file:
             moved, pairs = file["snapshots/displacement"][-1], file["bonds/particles"][:]
             if summary(file)["steps_unsettled"]:

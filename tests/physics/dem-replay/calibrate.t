@@ -111,6 +111,9 @@ for fraction in 0.5, 0.05:
     scene = {**SETTLED, "dem-replay": {"bond": {**SETTLED["dem-replay"]["bond"], "radius_fraction": fraction}}}
     borne += numbers(calibrate(scene, "fast", program="measure"))[2:]
 ok(0.5e-2 < borne[1] / borne[0] < 2e-2, "thin bonds bear in proportion to their sections, or nearly so", borne)
+scene["dem-replay"]["bond"]["radius_fraction"] = 0.01
+said = calibrate(scene, "1e6", "none", "1e2")
+ok(said.returncode == 0 and abs(numbers(said)[0] / 1e6 - 1) < 1e-3, "bonds so thin that they hardly bend have a modulus", said.stderr)
 
 # Unequal grains, one of which keeps a residual force of a few 1e-8 of the load.
 UNEQUAL = {"pack": {"method": "deposition", "count": 60, "radius": 12e-6, "seed": 3, "sizes": {"distribution": "lognormal", "spread": 0.35}},
