@@ -205,6 +205,14 @@ class Specimen:
         if not self.quiet:
             print(f"test {self.tests}, along {'xyz'[axis]}: {what}", file=sys.stderr, flush=True)
 
+    def tell_short(self, axes):
+        """Along which of AXES the grips reach into the middle half."""
+        for axis in axes:
+            length = self.edge[axis] / self.r.mean()
+            if length < 4 * LAYER and not self.quiet:
+                print(f"{self.scene}: the packing is {length:.3g} mean radii long along {'xyz'[axis]}: where it is less than {4 * LAYER}, strain is "
+                      "taken in part at the ends that are pulled at, and moduli may come out a tenth too low", file=sys.stderr, flush=True)
+
     def moduli(self, axis, bond, how=ELASTIC):
         """E and nu of bonds that do not break."""
         whole = {**bond, "bond.normal_strength": UNBREAKABLE, "bond.shear_strength": UNBREAKABLE}

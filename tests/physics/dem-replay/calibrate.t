@@ -52,6 +52,9 @@ ok(abs(bond()["shear_stiffness"] / bond()["normal_stiffness"] - 2) < 1e-5 and ab
 first = bond()
 quiet = calibrate(LATTICE, "2e9", "none", "1e6", "-q")
 ok((quiet.returncode, quiet.stderr, quiet.stdout, bond()) == (0, "", said.stdout, first), "none with -q", quiet.stderr)
+ok("mean radii long" not in said.stderr, "16 mean radii are long enough", said.stderr)
+short = calibrate({**LATTICE, "pack": {**LATTICE["pack"], "counts": [4, 4, 5]}}, "2e9", "none", "1e6")
+ok(short.returncode == 0 and "the packing is 10 mean radii long along z" in short.stderr, "and 10 are not, which is told", short.stderr)
 said = calibrate({**LATTICE, "dem-replay": {"bond": {**LATTICE["dem-replay"]["bond"], "shear_strength": 1e20}}}, "2e9", "none", "1e6")
 strength = bond()["normal_strength"] * area / distance**2 if said.returncode == 0 else 0
 ok(abs(strength / 1e6 - 1) < 0.01, "bonds that do not shear off: the same strength", (said.stderr, strength))
