@@ -305,10 +305,30 @@ static void phase_network_free(struct phase_network *conductor)
     free(conductor->queue);
 }
 
+// Whether all nodes of inlet and outlet lie on their walls. Where cells were left out
+// or an extra layer lies above they only face them, and the box is longer than the
+// network.
+static bool spans_box(const struct phase_network *conductor)
+{
+    const struct network *network = conductor->network;
+    const struct packing *packing = &network->packing;
+    const double near = 1e-9 * distance(packing->lower, packing->upper);
+    for (int i = 0; i < network->n_node; i++)
+        for (int wall = 0; wall < WALL_COUNT; wall++) {
+            const double at = component(network->node_position[i], wall / 2);
+            if (network->node_walls[i] & (conductor->inlet | conductor->outlet) &
+                    1u << wall &&
+                fabs(at - wall_position(packing, wall)) > near)
+                return false;
+        }
+    return true;
+}
+
 // Length over section of the box along the axis whose sides are inlet and outlet.
 static double box_shape_factor(const struct phase_network *conductor)
 {
     const struct packing *packing = &conductor->network->packing;
+    if (!spans_box(conductor)) return NAN;
     const struct vector box = subtract(packing->upper, packing->lower);
     for (int axis = 0; axis < 3; axis++) {
         const unsigned lower = 1u << 2 * axis, upper = 2u << 2 * axis;

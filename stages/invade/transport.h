@@ -18,7 +18,8 @@ struct transport {
     // concentration and the diffusivity (m).
     double conductance[PROPERTIES];
     // These as if the box were of one material: times its length over its section, m2
-    // and 1. Where inlet and outlet are not the two sides of one axis, NAN.
+    // and 1. Where inlet and outlet are not the two sides of one axis, or the network
+    // does not reach them, NAN.
     double material[PROPERTIES];
 };
 

@@ -207,6 +207,17 @@ with scratch_paths() as at:
                and abs(file["clusters/volume"][:].sum() / left - 1) < 1e-12,
                f"clusters in {liquid_in} hold what is left, and no throat imposed empty is in one")
 
+    # Only a network that ends on the sides of the box has numbers of the box.
+    for layer, boundary, whole in ("false", "truncate", True), ("false", "eliminate", False), ("true", "truncate", False):
+        run("pack", "--quiet", *sets("method=deposition", "count=150", f"extra_layer={layer}"), "-o", at("bed.h5"))
+        run("tessellate", *sets(f"boundary={boundary}"), at("bed.h5"), "-o", at("cells.h5"))
+        run("merge-nodes", at("cells.h5"), "-o", at("bed-network.h5"))
+        run("invade", *sets("transport=true"), at("bed-network.h5"), "-o", at("invasion.h5"))
+        with h5py.File(at("invasion.h5")) as file:
+            given = [name in file["summary"].attrs for name in ("permeability", "diffusivity", "diffusive_conductance")]
+            ok(given == [whole, whole, True],
+               f"permeability and diffusivity of a body, extra layer {layer}, boundary {boundary}: {whole}", given)
+
     network = read(at("network.h5"))
     ok(run("invade", input=network) == run("invade", "--threads", "2", at("network.h5")),
        "the same bytes through a pipe and by two threads")
