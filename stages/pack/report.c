@@ -193,28 +193,12 @@ static void say_histogram(const int *contacts, int n, struct packing_report *rep
     report_curve(report, "/structure/coordination", grains, n ? most + 1 : 0);
 }
 
-// The number of walls that each grain touches; in a domain with round walls or a
-// cut-out all walls together count as one.
-static int *touched_walls(const struct subject *subject)
-{
-    const struct packing *packing = subject->packing;
-    const struct domain *domain = subject->domain;
-    if (domain->shape == DOMAIN_BOX && domain->cut == CUT_NONE)
-        return wall_contacts(packing, subject->gap);
-    int *walls = NEW_ARRAY(int, packing->n_particle);
-    for (int i = 0; i < packing->n_particle; i++)
-        walls[i] = !domain_holds(domain, packing->position[i],
-                                 packing->radius[i] * (1 + subject->gap) *
-                                     (1 + 1e-9)); // more than its own tolerance
-    return walls;
-}
-
 // Rattlers carry nothing: `firm` counts contacts between grains that are none.
 static void say_contacts(const struct subject *subject, struct packing_report *report)
 {
     const int n = subject->packing->n_particle;
     const struct contacts *contacts = &subject->contacts;
-    int *walls = touched_walls(subject);
+    int *walls = wall_contacts(subject->packing, subject->gap);
     int *count = grain_contacts(subject->packing, contacts);
     uint8_t *rattler =
         find_rattlers(subject->packing, contacts, walls,

@@ -41,12 +41,29 @@ void bond_contacts(struct packing *packing, const struct contacts *contacts)
         duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
 }
 
+// Whether the box has walls across AXIS: not where it repeats, nor where a round body
+// that the grains lie in takes their place.
+static bool has_flat_walls(const struct packing *packing, int axis)
+{
+    bool has = !packing->periodic[axis];
+    for (int k = 0; k < packing->n_body; k++)
+        has &= !(packing->body[k].within && body_is_round(&packing->body[k], axis));
+    return has;
+}
+
+static bool touches_body(const struct packing *packing, int k, int grain, double gap)
+{
+    const struct vector at = packing->position[grain];
+    const struct body body = body_near(packing, k, at);
+    return distance(at, body_nearest(&body, at)) <= packing->radius[grain] * (1 + gap);
+}
+
 int *wall_contacts(const struct packing *packing, double gap)
 {
     const bool flat = packing_is_flat(packing);
     int *walls = NEW_ARRAY(int, packing->n_particle);
     for (int axis = 0; axis < 3; axis++) {
-        if (packing->periodic[axis] || (axis == 1 && flat)) continue;
+        if (!has_flat_walls(packing, axis) || (axis == 1 && flat)) continue;
         const double low = component(packing->lower, axis);
         const double high = component(packing->upper, axis);
         for (int i = 0; i < packing->n_particle; i++) {
@@ -55,6 +72,9 @@ int *wall_contacts(const struct packing *packing, double gap)
             walls[i] += (at - low <= reach) + (high - at <= reach);
         }
     }
+    for (int k = 0; k < packing->n_body; k++)
+        for (int i = 0; i < packing->n_particle; i++)
+            walls[i] += touches_body(packing, k, i, gap);
     return walls;
 }
 

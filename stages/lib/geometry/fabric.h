@@ -16,9 +16,9 @@ struct contacts find_contacts(const struct packing *packing, double gap);
 // stays the caller's.
 void bond_contacts(struct packing *packing, const struct contacts *contacts);
 
-// Walls of the box that each grain touches, a surface at most GAP radii off: not where
-// the box repeats, nor along y when the packing is flat. (n_particle); the caller frees
-// it.
+// Walls of the box and surfaces of bodies that each grain touches, at most GAP radii
+// off: not where the box repeats, nor along y when the packing is flat. (n_particle);
+// the caller frees it.
 int *wall_contacts(const struct packing *packing, double gap);
 
 // Contacts of each grain with other grains. (n_particle); the caller frees it.

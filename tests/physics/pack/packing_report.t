@@ -13,6 +13,17 @@ import numpy as np
 sys.path.insert(0, "tests")
 from tap import BIN, done, ok, run, scratch_paths, sets
 
+
+def left_firm(touch, walls, least):
+    """Grains that keep LEAST contacts, with grains or WALLS, when all others are taken away."""
+    firm = np.ones(len(walls), bool)
+    while True:
+        still = firm & ((touch & firm).sum(axis=1) + walls >= least)
+        if still.sum() == firm.sum():
+            return firm
+        firm = still
+
+
 with scratch_paths() as at:
     def pack(name, *settings, inputs=()):
         run("pack", *sets(*settings), *inputs, "-o", at(name), "--report", at(name + ".json"))
@@ -54,12 +65,7 @@ with scratch_paths() as at:
     walls = sum((position[:, k] <= radius * 1.05).astype(int)
                 + (edge - position[:, k] <= radius * 1.05) for k in range(3))
     ok(summary["wall_contacts"] == walls.sum(), "and with walls")
-    firm = np.ones(260, bool)
-    while True:
-        still = firm & ((touch & firm).sum(axis=1) + walls >= 4)
-        if still.sum() == firm.sum():
-            break
-        firm = still
+    firm = left_firm(touch, walls, 4)
     ok(summary["rattlers"] == 260 - firm.sum() > 0, "rattlers", summary["rattlers"])
     ok(np.isclose(summary["coordination_without_rattlers"],
                   touch[firm][:, firm].sum() / firm.sum(), rtol=1e-14),
@@ -152,6 +158,28 @@ with scratch_paths() as at:
         ok(not solid.all() and np.isclose(summary["porosity"], 1 - volume / (edge**2 * (x[:, 2] + r).max()), rtol=1e-12)
            and np.isclose(summary["mean_radius"], r.mean(), atol=0) and summary["contacts"] == contacts > 0
            and np.isclose(summary["coordination"], 2 * contacts / len(r)), f"{title} below a layer", summary)
+
+    # Each wall of a round body counts: a grain in the corner of floor and side touches two.
+    out = lambda x: np.hypot(x[:, 0] - 4, x[:, 1] - 4)
+    side, ends = (lambda x: [4 - out(x)]), (lambda x: [x[:, 2], 8 - x[:, 2]])
+    hole = lambda x: [np.linalg.norm(x - 4, axis=1) - 2, *(at for k in range(3) for at in (x[:, k], 8 - x[:, k]))]
+    cylinder = ["domain.shape=cylinder", "domain.radius=4", "domain.height=8"]
+    for shape, words, depths in [
+            ("cylinder", cylinder, lambda x: side(x) + ends(x)),
+            ("ring", ["domain.inner_radius=1.5", *cylinder, "domain.shape=ring"], lambda x: side(x) + ends(x) + [out(x) - 1.5]),
+            ("sphere", ["domain.shape=sphere", "domain.radius=4"], lambda x: [4 - np.linalg.norm(x - 4, axis=1)]),
+            ("box with a hole", ["upper=[8,8,8]", "domain.cut.shape=sphere", "domain.cut.radius=2"], hole)]:
+        said, file = pack("round", "check=none", "method=random_sequential", "radius=0.6", "most_trials=3000", "touching_gap=0.2", *words)
+        x, summary = file["particles/position"][:], said["summary"]
+        walls = sum((depth <= 0.6 * 1.2).astype(int) for depth in depths(x))
+        touch = (np.linalg.norm(x[:, None] - x, axis=2) <= 1.2 * 1.2) & ~np.eye(len(x), dtype=bool)
+        firm = left_firm(touch, walls, 4)
+        ok(summary["wall_contacts"] == walls.sum() and summary["rattlers"] == len(x) - firm.sum() and (shape == "sphere" or walls.max() > 1),
+           f"walls that grains touch in a {shape}, and rattlers", (summary, walls.sum(), len(x) - firm.sum()))
+        free = sum(not touch[i].any() and not walls[i] for i in range(len(x)))
+        found = json.loads(subprocess.run([f"{BIN}/check", "-s", "touching_gap=0.2", at("round"), "-o", "-"], capture_output=True).stdout)
+        said = [int(word) for finding in found["findings"] if finding["name"] == "free" for word in finding["text"].split() if word.isdigit()]
+        ok(said[:1] == ([free] if free else []), f"check counts those that touch nothing in a {shape}", (said, free))
 
     for name in "grains", "one":
         drawn = subprocess.run(["pipelines/figures/packing", at(name), at("figure.svg")],
