@@ -116,12 +116,19 @@ static json_t *reached_json(const struct pack_parameters *parameters,
                      "pressure", reached->pressure, "growth", reached->growth);
 }
 
+// Whether contacts had friction as grains moved: explosive repulsion has none.
+static bool moved_with_friction(const struct pack_parameters *parameters)
+{
+    return parameters->dynamics.friction > 0 &&
+           parameters->method != METHOD_EXPLOSIVE_REPULSION;
+}
+
 static const char *model_text(const struct reached *reached,
                               const struct pack_parameters *parameters)
 {
     if (!reached->dynamic)
         return "grains are where the method puts them: no dynamics was run\n";
-    if (parameters->dynamics.friction > 0)
+    if (moved_with_friction(parameters))
         return "grains moved by discrete elements: linear contacts [K 4.22], dashpots "
                "[K 4.27], Coulomb slip [K 4.25]\nno bonds while they moved\n";
     return "grains moved by discrete elements: linear contacts [K 4.22], dashpots [K "
@@ -168,7 +175,7 @@ static struct packing_report measure(const struct packing *packing,
             porosity);
     struct packing_report entry =
         report_packing(packing, domain, contacts, parameters->touching_gap,
-                       reached->dynamic && parameters->dynamics.friction > 0);
+                       reached->dynamic && moved_with_friction(parameters));
     report_number(&entry, "/summary/porosity", porosity);
     report_number(&entry, "/summary/unbalanced_ratio", reached->unbalanced_ratio);
     return entry;

@@ -181,6 +181,16 @@ with scratch_paths() as at:
         said = [int(word) for finding in found["findings"] if finding["name"] == "free" for word in finding["text"].split() if word.isdigit()]
         ok(said[:1] == ([free] if free else []), f"check counts those that touch nothing in a {shape}", (said, free))
 
+    # Grains that are parted have no friction: two contacts do not hold one.
+    said, file = pack("parted", "method=explosive_repulsion", "check=none", "touching_gap=0.02", "radius=0.5", "count=180", "upper=[6,6,6]")
+    x, summary = file["particles/position"][:], said["summary"]
+    walls = sum((at <= 0.5 * 1.02).astype(int) for k in range(3) for at in (x[:, k], 6 - x[:, k]))
+    touch = (np.linalg.norm(x[:, None] - x, axis=2) <= 1.02) & ~np.eye(len(x), dtype=bool)
+    rattlers = [len(x) - left_firm(touch, walls, least).sum() for least in (4, 2)]
+    ok(summary["rattlers"] == rattlers[0] > rattlers[1], "grains that are parted rattle with three contacts", (summary["rattlers"], rattlers))
+    model = file.attrs["model"].decode()
+    ok("without friction" in model and "Coulomb" not in model, "and the model says that they have no friction", model)
+
     for name in "grains", "one":
         drawn = subprocess.run(["pipelines/figures/packing", at(name), at("figure.svg")],
                                capture_output=True)
