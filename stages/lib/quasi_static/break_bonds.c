@@ -26,6 +26,7 @@ static void record_crack(struct quasi_static *qs, struct contact_pair *pair, int
         .cycle = qs->iterations,
         .position = add(qs->packing->position[i], scale(qs->length, from))};
     pair_break_bond(pair, pair->deformation);
+    qs->is_breaking = true;
 }
 
 static struct overload overload_of(const struct quasi_static *qs, int j)

@@ -232,7 +232,7 @@ enum status quasi_static_solve(struct quasi_static *qs, const struct vector *for
     apply_external_load(qs);
     update_load_scale(qs);
     if (qs->large) qs->large->work_spent = 0;
-    qs->is_unconverged = false;
+    qs->is_breaking = qs->is_unconverged = false;
     do {
         const enum status status = qs->kinematics->balance(qs, reason);
         if (status) return status;

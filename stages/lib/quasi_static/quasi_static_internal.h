@@ -98,6 +98,7 @@ struct quasi_static {
     int n_detached, first_detached;
     int iterations;
     int factors, n_load;  // since the cache was dropped
+    bool is_breaking;     // a bond has broken under this load
     bool is_unconverged;  // viscous relaxation found no rest under this load: it is not
                           // tried again as bonds break
     int n_unconverged;    // loads under which not all came to rest
