@@ -111,7 +111,8 @@ static double furthest_held(const struct quasi_static *qs)
 // Steps become history while what is held moves little. One that takes it further does
 // not: the first is shortened, later ones are lengthened until they lead to rest, or
 // show that it slides without end. A load takes grains less far than a bond that
-// breaks: under it the first step may be a hundred times as long, and is often the last.
+// breaks: under it the first step may be a hundred times as long, and is often the
+// last.
 static bool follow(struct quasi_static *qs, struct splitting *s)
 {
     const double stiffest = 1e4, endless = 1; // mean radii
