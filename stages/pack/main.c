@@ -98,6 +98,36 @@ static double porosity_in(const struct domain *domain, const struct packing *pac
     return 1 - (1 - porosity) * (box_volume(edge) / domain_volume(domain));
 }
 
+// Void share of the domain, or of its area with dimensions=2.
+static double void_share(const struct domain *domain, const struct packing *packing)
+{
+    if (domain->dimensions == 3) return porosity_in(domain, packing);
+    double solid = 0;
+    for (int i = 0; i < packing->n_particle; i++)
+        solid += M_PI * packing->radius[i] * packing->radius[i];
+    return 1 - solid * (domain->upper.y - domain->lower.y) / domain_volume(domain);
+}
+
+// Methods that keep box and radii reach a porosity by the number of grains alone.
+static void tell_porosity(const struct pack_parameters *parameters,
+                          const struct domain *domain, const struct packing *packing)
+{
+    const double wanted = parameters->dynamics.value;
+    if (parameters->method != METHOD_SOFT_SPHERES &&
+        parameters->method != METHOD_EXPLOSIVE_REPULSION)
+        return;
+    if (parameters->dynamics.target != TARGET_POROSITY) return;
+    const double porosity = void_share(domain, packing);
+    if (!(fabs(porosity - wanted) > 0.01)) return;
+    report("pack.target_value: asks for a porosity of %g, but %d grains leave %.3g of "
+           "the box: %s",
+           wanted, packing->n_particle, porosity,
+           parameters->count
+               ? "without pack.count as many are taken as it needs"
+               : "one is large beside it (another pack.seed, a larger box, or "
+                 "pack.sizes.largest)");
+}
+
 // What the dynamics came to, for the report; NULL when there was none.
 static json_t *reached_json(const struct pack_parameters *parameters,
                             const struct reached *reached)
@@ -359,6 +389,7 @@ int main(int argc, char **argv)
         packing.n_bond = 0; // given grains lose their bonds as they move
         make_packing(&invocation, &parameters, given, &domain, &packing, &reached);
     }
+    if (!given && !invocation.quiet) tell_porosity(&parameters, &domain, &packing);
     packing.n_body = domain_bodies(&domain, packing.body);
     take_slab(&parameters, &domain, &packing, invocation.quiet);
     struct contacts contacts = find_contacts(&packing, parameters.touching_gap);

@@ -49,6 +49,21 @@ with scratch_paths() as at:
         run("pack", "-q", "-p", scene, *sets(*settings), "-o", at(name))
         return h5py.File(at(name))
 
+    def told(*settings):
+        process = subprocess.run([f"{BIN}/pack", "-p", scene, *sets(*settings), "-o", at("told.h5")],
+                                 capture_output=True, text=True, check=True)
+        return "asks for a porosity" in process.stderr
+
+    # Rare grains have 125 times the volume of the others.
+    large = ["radius=1e-6", "upper=[2e-5,2e-5,2e-5]", "sizes.distribution=two_mode", "sizes.smallest=null",
+             "sizes.largest=null", "sizes.second_radius=5e-6", "sizes.second_share=0.01", "target_value=0.6"]
+    off = [seed for seed in range(1, 7) if told(*large, f"seed={seed}") != (
+        abs(h5py.File(at("told.h5"))["summary"].attrs["porosity"] - 0.6) > 0.01)]
+    ok(not off, "a porosity far from the one asked for is told", off)
+    ok(told("count=50", "target_value=0.6") and not told("target_value=0.6"), "so is that of too few grains")
+    discs = ["method=explosive_repulsion", "dimensions=2", "target_value=0.5", "sizes.distribution=one"]
+    ok(told(*discs, "count=30") and not told(*discs), "and that of discs, by their area")
+
     for periodic in [True] * 3, [True, False, True]:
         flags = "periodic=" + json.dumps(periodic)
         for porosity in 0.45, 0.33:
