@@ -321,11 +321,11 @@ static void move(struct scene *scene)
     struct reason reason;
     const int lost = move_nodes(before, &around, after);
     const int changed = lost + count_changed_nodes(before, &around, after);
-    neighbour_grains_free(&around);
     if (changed && parameters->on_change == CHANGE_REFUSED)
         refuse_change(changed, before->n_node, path);
-    enum status status =
-        move_throats(before, (enum clearance)parameters->clearance, after, &reason);
+    enum status status = move_throats(
+        before, &around, (enum clearance)parameters->clearance, after, &reason);
+    neighbour_grains_free(&around);
     if (!status) status = move_volumes(before, changed > 0, after, &reason);
     if (!status) status = move_shapes(before, changed > 0, after, &reason);
     if (status) die(status, "%s: %s", input_name(path), reason.text);

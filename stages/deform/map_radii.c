@@ -146,6 +146,7 @@ enum status map_radii(const struct network *before,
     }
     struct middles old = find_middles(before, NULL);
     follow_grains(before, around, moved, &old);
+    double *growth = find_growth(before, around, moved);
     struct places places = places_init(&renewed->packing, old.n, old.at);
     for (int t = 0; t < renewed->n_throat; t++) {
         if (renewed->throat_kind[t] != THROAT_NETWORK) continue;
@@ -153,7 +154,7 @@ enum status map_radii(const struct network *before,
         if (k < 0) continue;
         const int from = old.throat[k];
         renewed->throat_radius[t] =
-            moved_radius(before->throat_radius[from], was[from], is[t]);
+            moved_radius(before->throat_radius[from], growth[from], was[from], is[t]);
     }
     if (!before->throat_volume) {
         free(renewed->throat_volume);
@@ -162,6 +163,7 @@ enum status map_radii(const struct network *before,
     if (!before->throat_diffusion) forget_throat_shapes(renewed); // cylinders stay so
     places_free(&places);
     free_middles(&old);
+    free(growth);
     free(was);
     free(is);
     return STATUS_OK;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lengths change with the distance of the nodes, l' = l |d'| / |d|; radii with the
-// clearance, r' = r + (c' - c) min(1, r / c) (throats.h). So a length that was not the
-// distance of its nodes keeps its ratio to that, and a drawn radius its share of the
-// clearance.
+// clearance and the radii of the grains, r' = s r + (c' - s c) min(1, r / c)
+// (throats.h). So a length that was not the distance of its nodes keeps its ratio to
+// that, and a drawn radius its share of the clearance.
 //
 // Volumes that were shares of the void are computed again; others change as the
 // cylinders of their throats, r'^2 l' / (r^2 l), and are then scaled by one factor, so
@@ -90,28 +90,49 @@ double *find_clearances(const struct network *network, enum clearance how,
     return least;
 }
 
-double moved_radius(double radius, double before, double after)
+double *find_growth(const struct network *before, const struct neighbour_grains *around,
+                    const struct packing *moved)
 {
-    if (isinf(before) || isinf(after)) return radius;
+    double *growth = NEW_ARRAY(double, before->n_throat);
+    for (int t = 0; t < before->n_throat; t++) {
+        double old = 0, now = 0;
+        for (int end = 0; end < 2; end++) {
+            const int node = before->throat_nodes[t][end];
+            for (int64_t g = around->offset[node]; g < around->offset[node + 1]; g++) {
+                old += before->packing.radius[around->at[g].grain];
+                now += moved->radius[around->at[g].grain];
+            }
+        }
+        growth[t] = old > 0 ? now / old : 1;
+    }
+    return growth;
+}
+
+double moved_radius(double radius, double growth, double before, double after)
+{
+    if (isinf(before) || isinf(after)) return growth * radius;
     const double share = radius < before ? radius / before : 1;
-    return fmax(0, radius + share * (after - before));
+    return fmax(0, growth * radius + share * (after - growth * before));
 }
 
 // AFTER has the faces of BEFORE, so its clearances cannot fail where those did not.
-enum status move_throats(const struct network *before, enum clearance how,
+enum status move_throats(const struct network *before,
+                         const struct neighbour_grains *around, enum clearance how,
                          struct network *after, struct reason *reason)
 {
     double *old = find_clearances(before, how, reason);
     if (!old) return STATUS_BAD_DATA;
     double *now = find_clearances(after, how, reason);
+    double *growth = find_growth(before, around, &after->packing);
     for (int t = 0; t < before->n_throat; t++) {
         const double length = norm(along_throat(before, t));
         const double moved = norm(along_throat(after, t));
         after->throat_length[t] =
             length > 0 ? before->throat_length[t] * (moved / length) : moved;
         after->throat_radius[t] =
-            moved_radius(before->throat_radius[t], old[t], now[t]);
+            moved_radius(before->throat_radius[t], growth[t], old[t], now[t]);
     }
+    free(growth);
     free(old);
     free(now);
     return STATUS_OK;

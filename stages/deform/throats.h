@@ -3,6 +3,7 @@
 #pragma once
 
 #include "basics/status.h"
+#include "neighbour_grains.h"
 #include "network/clearance.h"
 #include "network/network.h"
 
@@ -12,20 +13,28 @@
 double *find_clearances(const struct network *network, enum clearance how,
                         struct reason *reason);
 
-// The radius of a throat of RADIUS when its clearance changes from BEFORE to AFTER: r'
-// below.
-double moved_radius(double radius, double before, double after);
+// (n_throat) By how much the grains around the two nodes of each throat have grown: the
+// sum of their radii in MOVED over that before, s below; 1 where there are none. The
+// caller frees it.
+double *find_growth(const struct network *before, const struct neighbour_grains *around,
+                    const struct packing *moved);
+
+// The radius of a throat of RADIUS when its clearance changes from BEFORE to AFTER, and
+// the grains around it by the factor GROWTH: r' below.
+double moved_radius(double radius, double growth, double before, double after);
 
 // Gives AFTER, a copy of BEFORE but for the places of grains and nodes, its lengths and
-// radii. With c the clearance of a throat, as above, and r its radius,
+// radii. With c the clearance of a throat, r its radius, and s the growth of the grains
+// AROUND it, as above,
 //
-//     r' = r + (c' - c) min(1, r / c):
+//     r' = s r + (c' - s c) min(1, r / c):
 //
 // a radius that is the clearance stays so, one that was drawn narrower keeps its share
-// of it, and one wider (of throats fused by merging) changes by as much. A length
-// changes as the distance of the nodes. STATUS_BAD_DATA: a face without a throat at its
-// rim.
-enum status move_throats(const struct network *before, enum clearance how,
+// of it, and one wider (entry radii; throats fused by merging) keeps its excess, which
+// shrinks with the grains. So all scale where all shrinks alike. A length changes as
+// the distance of the nodes. STATUS_BAD_DATA: a face without a throat at its rim.
+enum status move_throats(const struct network *before,
+                         const struct neighbour_grains *around, enum clearance how,
                          struct network *after, struct reason *reason);
 
 // If throats have volumes: volumes that were shares of the void are so again, unless

@@ -134,6 +134,20 @@ with scratch_paths() as at:
     ok(abs(moved["throats/volume"][:].sum() / (box - solid) - 1) < 1e-12, "and volumes sum to the void",
        moved["throats/volume"][:].sum() / (box - solid) - 1)
 
+    # All shrinks alike, grains too: so do radii, also those above the clearance.
+    for radius in "entry", "segment":
+        make("network", random, [f"throat_radius={radius}"]).close()
+        network = h5py.File(at("network"))
+        lay((0.95 - 1) * place)
+        with h5py.File(at("response"), "r+") as response:
+            response["snapshots/shrinkage"] = np.full(response["snapshots/displacement"].shape[:2], 0.05)
+        status, moved = deform("network")
+        ok(status == 0 and np.allclose(moved["throats/radius"][:], 0.95 * network["throats/radius"][:], rtol=1e-11, atol=0),
+           f"all shrinks alike: so do radii, {radius}",
+           status or np.ptp(moved["throats/radius"][:] / network["throats/radius"][:]))
+    make("network", random, void).close()
+    network = h5py.File(at("network"))
+
     # The top below the bottom.
     at_start = h5py.File(at("packing"))["particles/position"][:]
     lay(at_start * [0, 0, -2])
