@@ -19,6 +19,7 @@
 #include "artifacts/checkpoint.h"
 #include "basics/memory.h"
 #include "basics/status.h"
+#include "dynamics.h"
 #include "geometry/auxiliary.h"
 #include "geometry/fabric.h"
 #include "geometry/packing_check.h"
@@ -98,16 +99,6 @@ static double porosity_in(const struct domain *domain, const struct packing *pac
     return 1 - (1 - porosity) * (box_volume(edge) / domain_volume(domain));
 }
 
-// Void share of the domain, or of its area with dimensions=2.
-static double void_share(const struct domain *domain, const struct packing *packing)
-{
-    if (domain->dimensions == 3) return porosity_in(domain, packing);
-    double solid = 0;
-    for (int i = 0; i < packing->n_particle; i++)
-        solid += M_PI * packing->radius[i] * packing->radius[i];
-    return 1 - solid * (domain->upper.y - domain->lower.y) / domain_volume(domain);
-}
-
 // Methods that keep box and radii reach a porosity by the number of grains alone.
 static void tell_porosity(const struct pack_parameters *parameters,
                           const struct domain *domain, const struct packing *packing)
@@ -117,7 +108,7 @@ static void tell_porosity(const struct pack_parameters *parameters,
         parameters->method != METHOD_EXPLOSIVE_REPULSION)
         return;
     if (parameters->dynamics.target != TARGET_POROSITY) return;
-    const double porosity = void_share(domain, packing);
+    const double porosity = 1 - solid_fraction(domain, packing);
     if (!(fabs(porosity - wanted) > 0.01)) return;
     report("pack.target_value: asks for a porosity of %g, but %d grains leave %.3g of "
            "the box: %s",
