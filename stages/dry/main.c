@@ -261,7 +261,8 @@ int main(int argc, char **argv)
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))
         die(STATUS_BAD_DATA, "dry.%s", reason.text);
     if (!invocation.quiet) report_cut_radii(&parameters.radii);
-    refuse_repeated(input, &network, parameters.imposed_empty, "dry.imposed_empty");
+    if (!invocation.quiet)
+        report_repeated(input, &network, parameters.imposed_empty, "dry.imposed_empty");
     impose_empty_throats(&network, parameters.imposed_empty);
     parameters.shut = shut_closed_throats(&network);
     if (parameters.imposed_empty || parameters.shut)

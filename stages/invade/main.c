@@ -337,12 +337,15 @@ static void check_walls(const struct invasion_conditions *conditions, bool trans
 }
 
 static struct network network_with_sides(struct artifact *input,
-                                         const struct invade_parameters *parameters)
+                                         const struct invade_parameters *parameters,
+                                         bool quiet)
 {
     const struct network network = artifact_get_periodic_network(input);
     refuse_repeated(input, &network, parameters->invasion.inlet, "invade.inlet");
     refuse_repeated(input, &network, parameters->invasion.outlet, "invade.outlet");
-    refuse_repeated(input, &network, parameters->imposed_empty, "invade.imposed_empty");
+    if (!quiet)
+        report_repeated(input, &network, parameters->imposed_empty,
+                        "invade.imposed_empty");
     return network;
 }
 
@@ -386,7 +389,7 @@ int main(int argc, char **argv)
     check_rings(&parameters);
     complete_entry(&parameters);
     struct artifact *input = open_full_network(invocation.inputs[0]);
-    struct network network = network_with_sides(input, &parameters);
+    struct network network = network_with_sides(input, &parameters, invocation.quiet);
 
     struct reason reason;
     if (give_radii(&network, &parameters.radii, invocation.parameters, &reason))

@@ -140,6 +140,9 @@ struct network artifact_get_periodic_network(const struct artifact *artifact);
 // an axis along which the box of NETWORK, that of ARTIFACT, repeats: it has none there.
 void refuse_repeated(const struct artifact *artifact, const struct network *network,
                      unsigned walls, const char *key);
+// Tells them, where the others serve alone.
+void report_repeated(const struct artifact *artifact, const struct network *network,
+                     unsigned walls, const char *key);
 
 // What happened in a drying. A foreign one may have no step. The caller frees it with
 // drying_record_free.

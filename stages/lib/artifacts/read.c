@@ -555,6 +555,19 @@ void refuse_repeated(const struct artifact *artifact, const struct network *netw
                 "xyz"[wall / 2]);
 }
 
+void report_repeated(const struct artifact *artifact, const struct network *network,
+                     unsigned walls, const char *key)
+{
+    char sides[6 * 3 + 1] = "";
+    for (int wall = 0; wall < 6; wall++)
+        if (walls & 1u << wall && network->packing.periodic[wall / 2])
+            sprintf(sides + strlen(sides), " %c%c", wall % 2 ? '+' : '-',
+                    "xyz"[wall / 2]);
+    if (*sides)
+        report("%s: leaves out%s, where the box of %s repeats", key, sides,
+               input_name(artifact->path));
+}
+
 // /history has a row a step, /changes the throats that change in it: rows offset[k] to
 // offset[k+1] - 1 belong to step k.
 struct drying_record artifact_get_drying(const struct artifact *artifact)
