@@ -85,14 +85,6 @@ static void keep_outermost(const struct open_surface *face, int n_marked, bool *
     free(spot);
 }
 
-static bool is_round_at(const struct packing *packing, int wall)
-{
-    for (int k = 0; k < packing->n_body; k++)
-        if (packing->body[k].within && body_is_round(&packing->body[k], wall / 2))
-            return true;
-    return false;
-}
-
 static enum status find_feet(const struct open_surface *face, enum boundary_feet feet,
                              struct boundary_layer *layer, struct reason *reason)
 {
@@ -112,7 +104,7 @@ static enum status find_feet(const struct open_surface *face, enum boundary_feet
     return feet == FEET_SURFACE
                ? refuse(reason, STATUS_BAD_DATA, "no throat reaches the open wall %s%s",
                         names[face->wall],
-                        is_round_at(&network->packing, face->wall)
+                        packing_is_round_across(&network->packing, face->wall / 2)
                             ? ": the body is round there, and dries through flat sides "
                               "of the box alone"
                             : "")

@@ -41,16 +41,6 @@ void bond_contacts(struct packing *packing, const struct contacts *contacts)
         duplicate(contacts->pair, (size_t)contacts->count, sizeof *packing->bond);
 }
 
-// Whether the box has walls across AXIS: not where it repeats, nor where a round body
-// that the grains lie in takes their place.
-static bool has_flat_walls(const struct packing *packing, int axis)
-{
-    bool has = !packing->periodic[axis];
-    for (int k = 0; k < packing->n_body; k++)
-        has &= !(packing->body[k].within && body_is_round(&packing->body[k], axis));
-    return has;
-}
-
 static bool touches_body(const struct packing *packing, int k, int grain, double gap)
 {
     const struct vector at = packing->position[grain];
@@ -63,7 +53,8 @@ int *wall_contacts(const struct packing *packing, double gap)
     const bool flat = packing_is_flat(packing);
     int *walls = NEW_ARRAY(int, packing->n_particle);
     for (int axis = 0; axis < 3; axis++) {
-        if (!has_flat_walls(packing, axis) || (axis == 1 && flat)) continue;
+        if (packing->periodic[axis] || (axis == 1 && flat)) continue;
+        if (packing_is_round_across(packing, axis)) continue;
         const double low = component(packing->lower, axis);
         const double high = component(packing->upper, axis);
         for (int i = 0; i < packing->n_particle; i++) {

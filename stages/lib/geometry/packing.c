@@ -52,6 +52,14 @@ struct body body_near(const struct packing *packing, int k, struct vector x)
     return body;
 }
 
+bool packing_is_round_across(const struct packing *packing, int axis)
+{
+    for (int k = 0; k < packing->n_body; k++)
+        if (packing->body[k].within && body_is_round(&packing->body[k], axis))
+            return true;
+    return false;
+}
+
 // Of several bodies with this wall the nearest surface; of equally near ones the first.
 // X itself is the answer where there is none.
 struct vector nearest_on_wall(const struct packing *packing, int wall, struct vector x)

@@ -81,6 +81,10 @@ struct vector nearest_on_wall(const struct packing *packing, int wall, struct ve
 // one, not packing->body, where a place has to do with a body.
 struct body body_near(const struct packing *packing, int k, struct vector x);
 
+// Whether the grains lie in a body that is round across AXIS, 0 to 2: it takes the
+// place of the flat walls of the box there.
+bool packing_is_round_across(const struct packing *packing, int axis);
+
 // How far X is from the surfaces of the bodies, inwards, m; below 0 beyond one of them.
 // HUGE_VAL without bodies. O(n_body).
 double depth_in_bodies(const struct packing *packing, struct vector x);
