@@ -12,9 +12,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-// Flows are found again before the step is over once so much of the drying rate is not
-// brought, or from other sources than was found, but not sooner than after such a part
-// of the step.
+// Flows are found again before the step is over once films may fail to bring so much of
+// the drying rate, but not sooner than after such a part of the step.
 static const double MOST_FAILING = 0.05, SHORTEST = 0.1;
 
 struct film_supply *film_supply_create(const struct emptying_times *times)
@@ -63,10 +62,11 @@ void film_supply_free(struct film_supply *films)
     free(films);
 }
 
+// What comes from other sources than was found fails at most where it is at risk.
 static bool is_failing(const struct emptying_times *times)
 {
     const struct film_supply *films = times->films;
-    return films->stray + film_basins_failing(films->basins) >
+    return fmin(films->stray, films->at_risk) + film_basins_failing(films->basins) >
            MOST_FAILING * vapour_rate(&times->occupancy->vapour);
 }
 
@@ -238,6 +238,7 @@ void film_supply_state(struct emptying_times *times, struct checkpoint_stream *s
     stream_flags(stream, films->is_known, times->n_place);
     stream_flags(stream, &films->is_due, 1);
     stream_numbers(stream, &films->stray, 1);
+    stream_numbers(stream, &films->at_risk, 1);
     stream_numbers(stream, &films->saturation, 1);
     stream_long(stream, &films->solutions);
     film_basins_state(films->basins, stream);

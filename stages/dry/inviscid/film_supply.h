@@ -32,6 +32,7 @@ struct film_supply {
     struct film_factor *factor; // kept from one solution to the next
     bool is_due;                // reservoirs have changed so that flows must be found
     double stray;               // what films bring now beyond what was drawn then
+    double at_risk;             // what films might not bring from other sources
     double saturation;          // when last found
     bool failed;                // they were not
     int64_t solutions;          // so far

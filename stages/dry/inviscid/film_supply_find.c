@@ -36,6 +36,9 @@ static const double TOLERANCE = 1e-6;
 // From 0.03 to 0.3 times are about as exact; the more, the more often flows are found.
 static const double RESPONSE = 0.1;
 
+// At a level below this part of the highest the drop from there is more than the level.
+static const double FAR_BELOW = 0.5;
+
 // After so many solutions the factor is forgotten, with and without checkpoints: a
 // state that is kept there needs none. At a usual step it would not last longer.
 enum { SOLUTIONS_BETWEEN_CUTS = 4 };
@@ -183,6 +186,19 @@ static double tolerance_of(const struct emptying_times *times)
     return TOLERANCE * vapour_rate(&times->occupancy->vapour);
 }
 
+// What nodes take from films whose levels are FAR_BELOW the highest. From another
+// source the level at a node is lower by about the drop from the source at most.
+static double find_at_risk(const struct film_flow *flow)
+{
+    double highest = 0, at_risk = 0;
+    for (int i = 0; i < flow->matrix->n; i++)
+        highest = fmax(highest, compensated_value(flow->level[i]));
+    for (int i = 0; i < flow->matrix->n; i++)
+        if (!flow->held[i] && compensated_value(flow->level[i]) < FAR_BELOW * highest)
+            at_risk += flow->taken[i];
+    return at_risk;
+}
+
 // Each source has a basin, numbered alike.
 static void find_basins(const struct emptying_times *times,
                         const struct film_flow *flow, int n_throat)
@@ -278,6 +294,7 @@ void film_supply_find(struct emptying_times *times)
                           network.matrix.diagonal[i]);
     }
     find_basins(times, &flow, n_throat);
+    films->at_risk = find_at_risk(&flow);
     films->solutions += n > 0;
     free(taken);
     free(least);

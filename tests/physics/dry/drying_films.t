@@ -125,6 +125,16 @@ for step in 0.01, 0.02:
            f"films that dry out, films.step={step}: times are right to that part of the drying time",
            (apart, file["summary"].attrs["film_solutions"]))
 
+# Where they conduct well it does not matter which cluster supplies, and flows are found once a step.
+with dry(net, "rings=films", "films.conductance=10", "films.step=0") as file:
+    exact, end = time_at(file)
+with dry(net, "rings=films", "films.conductance=10", "films.step=0.02") as file:
+    times, last = time_at(file)
+    apart = abs(times * last / end - exact).max()
+    ok(apart < 0.005 and file["summary"].attrs["film_solutions"] < 1.2 / 0.02,
+       "films that conduct well: flows are found once a step, and times are right",
+       (apart, file["summary"].attrs["film_solutions"]))
+
 # ---- similar ------------------------------------------------------------------------------
 
 # Q = n C gamma / (3 beta nu) r^3 / L: with all lengths times 8 a body dries alike if nu / gamma is 8 times as large, as
