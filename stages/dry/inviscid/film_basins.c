@@ -16,6 +16,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Sites less below their source than this part of its level are not told from it: that
+// films bring a thousand times more is as if they had no resistance.
+static const double LEAST_DROP = 1e-3;
+
 struct waiting {
     double gap;
     int turn, cluster;
@@ -28,6 +32,8 @@ struct end {
 };
 
 struct basin {
+    double highest;    // level of the source, when found
+    double admittance; // what sites get over how far they are below it, added up
     double fall;       // of levels
     int end, last_end; // ENDs, the lowest level first; before END levels are 0
     int n, capacity;
@@ -187,12 +193,21 @@ static void adopt(const struct conductance_matrix *matrix, int *basin)
     free(queued);
 }
 
+// A site that gets INFLOW, below 0 if it gives.
+static void admit(struct basin *basin, double inflow, double level)
+{
+    if (!(inflow > 0)) return;
+    const double drop = fmax(basin->highest - level, LEAST_DROP * basin->highest);
+    basin->admittance += inflow / drop;
+}
+
 static void enter(struct film_basins *basins, const struct film_flow *flow, int i,
                   int turn, int b)
 {
     const int place = flow->place[i];
     const double level = compensated_value(flow->level[i]);
     basins->of[place] = b;
+    admit(&basins->basin[b], flow->taken[i] - flow->surplus[i], level);
     if (place < basins->n_cluster)
         film_basins_set(basins, place, b, level - flow->least[i], turn);
     else if (!flow->held[i] && flow->taken[i] > 0) {
@@ -229,7 +244,8 @@ void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
         of[i] = -2;
     for (int b = 0; b < n_source; b++) {
         GROW_ARRAY(basins->basin, b, basins->capacity);
-        basins->basin[basins->n++] = (struct basin){0};
+        basins->basin[basins->n++] =
+            (struct basin){.highest = compensated_value(flow->level[source[b]])};
         of[source[b]] = b;
     }
     for (int i = 0; i < n; i++)
@@ -247,6 +263,22 @@ void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
 int film_basins_of(const struct film_basins *basins, int place)
 {
     return basins->of[place];
+}
+
+void film_basins_add_node(struct film_basins *basins, int place, int basin)
+{
+    basins->of[place] = basin;
+}
+
+double film_basins_highest(const struct film_basins *basins, int basin)
+{
+    return basins->basin[basin].highest;
+}
+
+double film_basins_capacity(const struct film_basins *basins, int basin)
+{
+    const struct basin *here = &basins->basin[basin];
+    return here->admittance * fmax(0, here->highest - here->fall);
 }
 
 void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap,
@@ -323,6 +355,8 @@ static void ends_state(struct film_basins *basins, struct checkpoint_stream *str
 static void basin_state(struct basin *basin, int n_end, int n_cluster,
                         struct checkpoint_stream *stream)
 {
+    stream_numbers(stream, &basin->highest, 1);
+    stream_numbers(stream, &basin->admittance, 1);
     stream_numbers(stream, &basin->fall, 1);
     stream_integer(stream, &basin->end, 0, n_end);
     stream_integer(stream, &basin->last_end, 0, n_end);

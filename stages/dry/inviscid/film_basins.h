@@ -25,6 +25,14 @@ void film_basins_find(struct film_basins *basins, const struct film_flow *flow,
 // The basin of PLACE; -1: none.
 int film_basins_of(const struct film_basins *basins, int place);
 
+// PLACE, a node, is in BASIN from now on (-1: in none).
+void film_basins_add_node(struct film_basins *basins, int place, int basin);
+
+// The level of the source of BASIN when found, and the most that films bring to sites
+// of it now.
+double film_basins_highest(const struct film_basins *basins, int basin);
+double film_basins_capacity(const struct film_basins *basins, int basin);
+
 // CLUSTER is in BASIN (-1: in none), its level GAP above its least. It does not supply.
 // Of equal gaps the least TURN, from 0 to below N_CLUSTER, is first.
 void film_basins_set(struct film_basins *basins, int cluster, int basin, double gap,

@@ -7,6 +7,7 @@
 #include "basics/memory.h"
 #include "film_balance.h"
 #include "film_basins.h"
+#include "film_inflow.h"
 #include "geometry/space_filling_curve.h"
 
 #include <math.h>
@@ -35,6 +36,7 @@ struct film_supply *film_supply_create(const struct emptying_times *times)
         .curve = order_along_curve(network->n_node, network->node_position),
         .factor = film_factor_create(),
         .basins = film_basins_create(times->n_place, network->n_throat),
+        .inflow = film_inflow_create(network->n_node),
         .scale = 1,
         .is_due = true};
     for (int p = 0; p < times->n_place; p++)
@@ -59,6 +61,7 @@ void film_supply_free(struct film_supply *films)
     free(films->curve);
     film_factor_free(films->factor);
     film_basins_free(films->basins);
+    film_inflow_free(films->inflow);
     free(films);
 }
 
@@ -66,8 +69,9 @@ void film_supply_free(struct film_supply *films)
 static bool is_failing(const struct emptying_times *times)
 {
     const struct film_supply *films = times->films;
-    return fmin(films->stray, films->at_risk) + film_basins_failing(films->basins) >
-           MOST_FAILING * vapour_rate(&times->occupancy->vapour);
+    const double failing = fmin(films->stray, films->at_risk) + films->lack +
+                           film_basins_failing(films->basins);
+    return failing > MOST_FAILING * vapour_rate(&times->occupancy->vapour);
 }
 
 bool film_supply_is_due(const struct emptying_times *times)
@@ -123,6 +127,7 @@ void film_supply_set_rates(struct emptying_times *times)
 {
     struct film_supply *films = times->films;
     update_falling(times);
+    films->lack = film_inflow_limit(times);
     find_scale(times);
     for (int k = 0; k < times->n; k++) {
         const int owner = times->owner[k];
@@ -179,13 +184,14 @@ static void choose_source(struct film_supply *films, int basin, double drawn)
 
 // Films may come to rings that no throat feeds any more.
 static void bare_nodes(struct film_supply *films, const struct occupancy *occupancy,
-                       int throat)
+                       int throat, int basin)
 {
     for (int end = 0; end < 2; end++) {
         const int node = occupancy->network->throat_nodes[throat][end];
         if (occupancy->liquid_beside[node] > 0) continue;
         films->own[occupancy->network->n_throat + node] = 0;
         films->reached[node] = true;
+        film_basins_add_node(films->basins, occupancy->network->n_throat + node, basin);
     }
 }
 
@@ -204,7 +210,7 @@ void film_supply_empty_throat(struct emptying_times *times, int throat, int clus
     const int basin = film_basins_of(films->basins, cluster);
     const int source = basin >= 0 ? films->source[basin] : -1;
     const double drawn = source >= 0 ? films->drawn[source] : 0;
-    bare_nodes(films, times->occupancy, throat);
+    bare_nodes(films, times->occupancy, throat, basin);
     films->is_due |= films->n_source == 0; // the first film, perhaps
     for (int l = 0, last = -1; l < clusters->n_moved; l++) {
         const int moved = clusters->of_throat[clusters->moved[l]];
@@ -239,9 +245,11 @@ void film_supply_state(struct emptying_times *times, struct checkpoint_stream *s
     stream_flags(stream, &films->is_due, 1);
     stream_numbers(stream, &films->stray, 1);
     stream_numbers(stream, &films->at_risk, 1);
+    stream_numbers(stream, &films->lack, 1);
     stream_numbers(stream, &films->saturation, 1);
     stream_long(stream, &films->solutions);
     film_basins_state(films->basins, stream);
+    film_inflow_state(films->inflow, stream);
     if (!stream->restoring) return;
     film_factor_forget(films->factor);
     films->failed = false;

@@ -18,6 +18,7 @@ struct film_supply {
     int n_source;
     int *source; // (n_source) by basin, the cluster it draws from; -1: none is left
     struct film_basins *basins;
+    struct film_inflow *inflow;
 
     bool *reached; // (n_node) films reach it: its rings keep their liquid
     bool *floats;  // (n_throat) by cluster: films bring all it evaporates
@@ -33,6 +34,7 @@ struct film_supply {
     bool is_due;                // reservoirs have changed so that flows must be found
     double stray;               // what films bring now beyond what was drawn then
     double at_risk;             // what films might not bring from other sources
+    double lack;                // what they do not bring where they came since
     double saturation;          // when last found
     bool failed;                // they were not
     int64_t solutions;          // so far

@@ -25,6 +25,7 @@
 #include "film_balance.h"
 #include "film_basins.h"
 #include "film_flow.h"
+#include "film_inflow.h"
 #include "film_network.h"
 
 #include <math.h>
@@ -186,16 +187,16 @@ static double tolerance_of(const struct emptying_times *times)
     return TOLERANCE * vapour_rate(&times->occupancy->vapour);
 }
 
-// What nodes take from films whose levels are FAR_BELOW the highest. From another
-// source the level at a node is lower by about the drop from the source at most.
+// What sites take from films whose levels are FAR_BELOW the highest. From another
+// source the level at a site is lower by about the drop from the source at most.
 static double find_at_risk(const struct film_flow *flow)
 {
     double highest = 0, at_risk = 0;
     for (int i = 0; i < flow->matrix->n; i++)
         highest = fmax(highest, compensated_value(flow->level[i]));
     for (int i = 0; i < flow->matrix->n; i++)
-        if (!flow->held[i] && compensated_value(flow->level[i]) < FAR_BELOW * highest)
-            at_risk += flow->taken[i];
+        if (compensated_value(flow->level[i]) < FAR_BELOW * highest)
+            at_risk += fmax(0, flow->taken[i] - flow->surplus[i]);
     return at_risk;
 }
 
@@ -294,6 +295,7 @@ void film_supply_find(struct emptying_times *times)
                           network.matrix.diagonal[i]);
     }
     find_basins(times, &flow, n_throat);
+    film_inflow_find(times, &flow);
     films->at_risk = find_at_risk(&flow);
     films->solutions += n > 0;
     free(taken);

@@ -21,6 +21,7 @@ static const struct link links[] = {{{A, LEFT}, 1},       {{LEFT, MIDDLE}, 1},
                                     {{LEFT, AT_A}, 1},    {{RIGHT, AT_B}, 1}};
 
 static const double taken[N] = {[LEFT] = 0.25, [MIDDLE] = 1.875, [RIGHT] = 0.5};
+static double surplus[N] = {0.5, 2.125};
 static const double least[N] = {1, 4, 0.4, 1.5};
 static const int turn[N] = {1, 0, 3, 2};
 
@@ -37,7 +38,8 @@ static struct film_basins *basins_of_row(void)
                                    .taken = taken,
                                    .least = least,
                                    .held = held,
-                                   .level = level};
+                                   .level = level,
+                                   .surplus = surplus};
     struct film_basins *basins = film_basins_create(13, 4);
     film_basins_find(basins, &flow, 1e-6, turn, 2, source);
     conductance_matrix_free(&matrix);
@@ -71,6 +73,21 @@ TEST(nearest_to_its_least_supplies)
     film_basins_set(basins, B, 1, -1, 0);
     assert_int_equal(film_basins_supplier(basins, 1), B);
     assert_within(film_basins_fall(basins, 12), -1, 0);
+    film_basins_free(basins);
+}
+
+// From A the left node gets 1/4 half a level down. From B the middle one gets 15/8 and
+// the right one 1/2, 15/4 and 17/8 down. With levels of 0 they would get as much more
+// as the levels from the sources to 0 are higher, and less as those fall.
+TEST(capacity_goes_with_the_level_of_the_source)
+{
+    struct film_basins *basins = basins_of_row();
+    const double of_b = 1.875 / 3.75 + 0.5 / 2.125;
+    assert_within(film_basins_capacity(basins, 0), 0.5, 1e-15);
+    assert_within(film_basins_capacity(basins, 1), 4 * of_b, 1e-15);
+    film_basins_set(basins, B, 1, 3, 0);
+    film_basins_supplier(basins, 1);
+    assert_within(film_basins_capacity(basins, 1), 3.625 * of_b, 1e-15);
     film_basins_free(basins);
 }
 
