@@ -27,11 +27,12 @@ enum { MAX_THROATS_BY_EVENTS = 30000 };
 static const double COARSE_STEPS = 1e-3;
 
 // The same for films.step.
-enum { MAX_THROATS_BY_FLOWS = 3000 };
-static const double FLOW_STEPS = 1e-2;
+enum { MAX_THROATS_BY_FILM_FLOWS = 3000 };
+static const double FILM_STEPS = 2e-2;
 
 // And for flow_step.
-enum { MAX_THROATS_BY_EACH_FLOW = 20000 };
+enum { MAX_THROATS_BY_FLOWS = 20000 };
+static const double FLOW_STEPS = 1e-2;
 
 #define AT(member) offsetof(struct dry_parameters, member)
 #define GIVEN AT(given)
@@ -78,7 +79,7 @@ const struct parameter dry_table[] = {
     {"films.step", PARAMETER_NUMBER, "1", "null", AT(conditions.films.step),
      BETWEEN(0, 1),
      .text = "fall of the saturation after which the flow in films is found again; 0: "
-             "at each event; null: 0 up to 3000 throats, 0.01 in larger networks"},
+             "at each event; null: 0 up to 3000 throats, 0.02 in larger networks"},
     {"saturation_step", PARAMETER_NUMBER, "1", "1", AT(conditions.saturation_step),
      BETWEEN(1e-6, 1),
      .text = "viscous: the flow is computed again when the saturation of a throat has "
@@ -235,7 +236,7 @@ static enum status complete_fluids(struct dry_parameters *parameters,
 double film_step(const struct dry_parameters *parameters, double throats)
 {
     const double step = parameters->conditions.films.step;
-    return !isnan(step) ? step : throats > MAX_THROATS_BY_FLOWS ? FLOW_STEPS : 0;
+    return !isnan(step) ? step : throats > MAX_THROATS_BY_FILM_FLOWS ? FILM_STEPS : 0;
 }
 
 double flow_step(const struct dry_parameters *parameters, double throats)
@@ -243,7 +244,7 @@ double flow_step(const struct dry_parameters *parameters, double throats)
     const struct drying_conditions *conditions = &parameters->conditions;
     if (!isnan(conditions->flow_step)) return conditions->flow_step;
     const bool at_each = conditions->kelvin || conditions->saturation_step < 1;
-    return !at_each && throats > MAX_THROATS_BY_EACH_FLOW ? FLOW_STEPS : 0;
+    return !at_each && throats > MAX_THROATS_BY_FLOWS ? FLOW_STEPS : 0;
 }
 
 double vapour_step(const struct dry_parameters *parameters, double open_nodes,
