@@ -125,6 +125,16 @@ for step in 0.01, 0.02:
            f"films that dry out, films.step={step}: times are right to that part of the drying time",
            (apart, file["summary"].attrs["film_solutions"]))
 
+# Between two solutions films bring no more than their capacity. Without it long steps dry bodies too fast, here by 0.016
+# and 0.025 of the drying time.
+for conductance, step, most in ("0.003", 0.05, 0.01), ("0.1", 0.1, 0.015):
+    with dry(net, "rings=films", f"films.conductance={conductance}", "films.step=0") as file:
+        exact, end = time_at(file)
+    with dry(net, "rings=films", f"films.conductance={conductance}", f"films.step={step}") as file:
+        times, last = time_at(file)
+        apart = abs(times * last / end - exact).max()
+        ok(apart < most, f"films.conductance={conductance}, films.step={step}: films bring what they can", apart)
+
 # Where they conduct well it does not matter which cluster supplies, and flows are found once a step.
 with dry(net, "rings=films", "films.conductance=10", "films.step=0") as file:
     exact, end = time_at(file)
