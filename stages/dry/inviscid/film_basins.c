@@ -207,7 +207,7 @@ static void enter(struct film_basins *basins, const struct film_flow *flow, int 
     const int place = flow->place[i];
     const double level = compensated_value(flow->level[i]);
     basins->of[place] = b;
-    admit(&basins->basin[b], flow->taken[i] - flow->surplus[i], level);
+    admit(&basins->basin[b], film_flow_inflow(flow, i), level);
     if (place < basins->n_cluster)
         film_basins_set(basins, place, b, level - flow->least[i], turn);
     else if (!flow->held[i] && flow->taken[i] > 0) {

@@ -29,6 +29,12 @@ struct film_flow {
     int rounds, iterations;     // added to
 };
 
+// What films bring to site I, once found; below 0: what they take from it.
+static inline double film_flow_inflow(const struct film_flow *flow, int i)
+{
+    return flow->taken[i] - flow->surplus[i];
+}
+
 // Finds HELD, LEVEL and SURPLUS. What does not balance at sites that are not held is
 // TOLERANCE in all at most, or what rounding of levels makes. False if that is not
 // reached.

@@ -65,7 +65,7 @@ void film_inflow_find(const struct emptying_times *times, const struct film_flow
         const int node = flow->place[i] - n_throat;
         const int basin = film_basins_of(basins, flow->place[i]);
         if (node < 0 || basin < 0) continue;
-        inflow->found[node] = flow->taken[i] - flow->surplus[i];
+        inflow->found[node] = film_flow_inflow(flow, i);
         inflow->class[node] = class_of(flow, i, film_basins_highest(basins, basin));
     }
 }

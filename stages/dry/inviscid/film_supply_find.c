@@ -196,7 +196,7 @@ static double find_at_risk(const struct film_flow *flow)
         highest = fmax(highest, compensated_value(flow->level[i]));
     for (int i = 0; i < flow->matrix->n; i++)
         if (compensated_value(flow->level[i]) < FAR_BELOW * highest)
-            at_risk += fmax(0, flow->taken[i] - flow->surplus[i]);
+            at_risk += fmax(0, film_flow_inflow(flow, i));
     return at_risk;
 }
 

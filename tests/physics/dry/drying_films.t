@@ -115,35 +115,31 @@ def time_at(file):
     return np.interp(-np.arange(0.999, 0, -0.001), -saturation, time) / time[-1], time[-1]
 
 
-with dry(net, "rings=films", "films.conductance=0.01", "films.step=0") as file:
-    exact, end = time_at(file)
-for step in 0.01, 0.02:
-    with dry(net, "rings=films", "films.conductance=0.01", f"films.step={step}") as file:
+def apart(conductance, step):
+    """How far times are from those with the flow at each event, over the drying time, and how often it was found."""
+    films = ["rings=films", f"films.conductance={conductance}"]
+    with dry(net, *films, "films.step=0") as file:
+        exact, end = time_at(file)
+    with dry(net, *films, f"films.step={step}") as file:
         times, last = time_at(file)
-        apart = abs(times * last / end - exact).max()
-        ok(apart < step and file["summary"].attrs["film_solutions"] < 200,
-           f"films that dry out, films.step={step}: times are right to that part of the drying time",
-           (apart, file["summary"].attrs["film_solutions"]))
+        return abs(times * last / end - exact).max(), file["summary"].attrs["film_solutions"]
+
+
+for step in 0.01, 0.02:
+    error, solutions = apart(0.01, step)
+    ok(error < step and solutions < 200,
+       f"films that dry out, films.step={step}: times are right to that part of the drying time", (error, solutions))
 
 # Between two solutions films bring no more than their capacity. Without it long steps dry bodies too fast, here by 0.016
 # and 0.025 of the drying time.
-for conductance, step, most in ("0.003", 0.05, 0.01), ("0.1", 0.1, 0.015):
-    with dry(net, "rings=films", f"films.conductance={conductance}", "films.step=0") as file:
-        exact, end = time_at(file)
-    with dry(net, "rings=films", f"films.conductance={conductance}", f"films.step={step}") as file:
-        times, last = time_at(file)
-        apart = abs(times * last / end - exact).max()
-        ok(apart < most, f"films.conductance={conductance}, films.step={step}: films bring what they can", apart)
+for conductance, step, most in (0.003, 0.05, 0.01), (0.1, 0.1, 0.015):
+    error, solutions = apart(conductance, step)
+    ok(error < most, f"films.conductance={conductance}, films.step={step}: films bring what they can", error)
 
 # Where they conduct well it does not matter which cluster supplies, and flows are found once a step.
-with dry(net, "rings=films", "films.conductance=10", "films.step=0") as file:
-    exact, end = time_at(file)
-with dry(net, "rings=films", "films.conductance=10", "films.step=0.02") as file:
-    times, last = time_at(file)
-    apart = abs(times * last / end - exact).max()
-    ok(apart < 0.005 and file["summary"].attrs["film_solutions"] < 1.2 / 0.02,
-       "films that conduct well: flows are found once a step, and times are right",
-       (apart, file["summary"].attrs["film_solutions"]))
+error, solutions = apart(10, 0.02)
+ok(error < 0.005 and solutions < 1.2 / 0.02,
+   "films that conduct well: flows are found once a step, and times are right", (error, solutions))
 
 # ---- similar ------------------------------------------------------------------------------
 
